@@ -28,7 +28,7 @@ OF_CODECS = (
 )
 # CPython 3.11 counts the depth of all threads' syntax trees together, and may then raise SystemError
 # (python/cpython#106905).
-_ONE_PARSES = Lock()
+_PARSING = Lock()
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Recorded:
 @cache
 def code_of(path: Path) -> str:
     """Return the dump of a module's syntax tree, without comments and docstrings."""
-    with _ONE_PARSES:
+    with _PARSING:
         tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in _documented(tree):
         node.body = node.body[1:] or [ast.Pass()]

@@ -192,7 +192,7 @@ class Layout:
         """Raise LayoutError if a word cannot store its component."""
         target, component = self.targets[word.target], word.component
         place, storage = place_of(self.name, word.target, target), target.storage
-        bits = word.bits or storage.bits[word.first]
+        bits = word.bits_in(storage)
         is_signed = bool(word.sign) or (component == "depth" and self.encoding.sign_bits > 0)
         least = LEAST_BITS.get(component, 2 if is_signed else 1)
         if bits < least:

@@ -66,6 +66,10 @@ class Word:
     kept: Kept | None = None
     label: str = ""
 
+    def bits_in(self, storage: Storage) -> int:
+        """Return the bits that the component takes in a target of this storage: its own, or those of its channel."""
+        return self.bits or storage.bits[self.first]
+
 
 @dataclass(frozen=True)
 class Target:

@@ -35,10 +35,9 @@ def _fields(row: Row) -> list[Row]:
     fields = []
     try:
         for index, target in enumerate(targets_of(row["targets"])):
-            sizes = target.storage.bits
             for word in all_placed(row["layout"], index, target):
-                start = word.first if word.bits else sum(sizes[: word.first])
-                bits = word.bits or sizes[word.first]
+                start = word.first if word.bits else sum(target.storage.bits[: word.first])
+                bits = word.bits_in(target.storage)
                 field = {"target": f"{index}: {target.format}", "bits": bits, "x": start, "x2": start + bits}
                 fields.append(field | {"attribute": word.label or word.component.partition(".")[0]})
     except LayoutError:

@@ -444,7 +444,7 @@ class Judged:
         }
         lacks = [held[name] for name, word in LACKS.items() if name in held and word not in kept]
         storages = [(word, layout.targets[word.target].storage) for word in layout.words]
-        more = [word.bits or storage.bits[word.first] for word, storage in storages if "emissive" in word.component]
+        more = [word.bits_in(storage) for word, storage in storages if "emissive" in word.component]
         return sum(lacks) / 8 - (0 if "emissive" in held else sum(more) / 8)
 
     def _contract_bytes(self, layout: Layout) -> int:

@@ -59,7 +59,7 @@ def _reads_little(layout: Layout, read: frozenset[str]) -> bool:
     mine = {component for name in read for component in COMPONENTS.get(name, ())}
     homes = {word.target for word in layout.words if word.component in mine}
     beside = [word for word in layout.words if word.target in homes and word.component not in mine]
-    sizes = [word.bits or layout.targets[word.target].storage.bits[word.first] for word in beside]
+    sizes = [word.bits_in(layout.targets[word.target].storage) for word in beside]
     is_large = any("." in word.component for word in beside) or max(sizes, default=0) >= LARGE_BITS
     return not is_large and sum(layout.targets[index].storage.texel_bytes for index in homes) <= READ_BYTES * len(read)
 
@@ -122,7 +122,7 @@ def _as_it_is(name: str, layout: Layout, pairs: Sequence[tuple[str, Word]]) -> A
     for _, word in pairs:
         storage = layout.targets[word.target].storage
         kinds.append(UNORM if word.bits else _kind(storage, word.first))
-        bits.append(word.bits or storage.bits[word.first])
+        bits.append(word.bits_in(storage))
     # A number that is no colour has no curve of its own: what lies in a channel of sRGB is as good in any other.
     kind = FLOAT if FLOAT in kinds else UNORM
     words = tuple(_without_bits(text) for text, _ in pairs)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -46,13 +46,16 @@ def write(folder: Path, chosen: Sequence[PickCase], rows: Sequence[Row], drawing
 def placed(chosen: Sequence[PickCase], rows: Sequence[Row]) -> Iterator[PickCase]:
     """Yield the cases whose codec the answer names, except in other storages of the same bytes."""
     named = {CodecKey.of(row) for row in rows if set(places_of(row)) & set(PLACES)}
-    yield from (case for case in chosen if not case.is_beside and _key_of_case(case) in named)
+    return _among(chosen, named)
 
 
 def eligible(chosen: Sequence[PickCase], rows: Sequence[Row]) -> Iterator[PickCase]:
     """Yield the cases whose codec is not left out, except in other storages of the same bytes."""
-    keys = {CodecKey.of(row) for row in rows if not row["left_out"]}
-    yield from (case for case in chosen if not case.is_beside and _key_of_case(case) in keys)
+    return _among(chosen, {CodecKey.of(row) for row in rows if not row["left_out"]})
+
+
+def _among(chosen: Sequence[PickCase], keys: Container[CodecKey]) -> Iterator[PickCase]:
+    return (case for case in chosen if not case.is_beside and _key_of_case(case) in keys)
 
 
 def _key_of_case(case: PickCase) -> CodecKey:

@@ -44,8 +44,7 @@ class CardTable {
 
   // What the row is of: a codec, or an encoding in any storage.
   nameOf(row) {
-    const [encoding, storage, rounding] = ["encoding", "storage", "rounding"].map((name) => this.value(name, row));
-    return [encoding, storage, rounding === "nearest" ? null : rounding].filter(Boolean).join(" ");
+    return codecLabel(...["encoding", "storage", "rounding"].map((name) => this.value(name, row)));
   }
 
   add(row) {

@@ -138,7 +138,7 @@ async function cleanRoughness() {
   const value = (name, row) => (column[name] ? valueIn(column[name], row) : null), isUsual = (name, row, usual) => [null, usual].includes(value(name, row)), height = ({ roughness }) => roughness ?? Infinity;
   for (let row = 0; row < count; row++) {
     if (!value("decides", row) || !isUsual("dither", row, "none") || !isUsual("frames", row, 1)) continue;
-    const [encoding, storage, rounding] = ["encoding", "storage", "rounding"].map((name) => value(name, row)), codec = [encoding, storage, rounding === "nearest" ? null : rounding].filter(Boolean).join(" ");
+    const codec = codecLabel(...["encoding", "storage", "rounding"].map((name) => value(name, row)));
     const threshold = Number(value("threshold", row)), decides = { roughness: value("roughness", row), where: `${value("object", row)} under ${value("environment", row)}` }, thresholds = codecs.get(codec) ?? new Map();
     // Metal and plaster each have an object that decides.
     if (!thresholds.has(threshold) || height(decides) > height(thresholds.get(threshold))) codecs.set(codec, thresholds.set(threshold, decides));

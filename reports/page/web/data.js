@@ -14,6 +14,9 @@ function valueIn(column, row) {
   return value === null ? null : column.kind === "text" ? column.words[value] : column.kind === "float" ? number(String(value)) : value;
 }
 
+// What a codec is called: its rounding is named where it is not the usual one.
+const codecLabel = (encoding, storage, rounding) => [encoding, storage, rounding === "nearest" ? null : rounding].filter(Boolean).join(" ");
+
 // A float as Python prints it, the shortest digits that give it again.
 function exactText(value) {
   if (!Number.isFinite(value)) return String(value).replace("Infinity", "inf");

@@ -57,7 +57,7 @@ def table(contents: Contents) -> list[str]:
 
 def _row(contents: Contents, word: Word) -> tuple[str, ...]:
     target = contents.layout.targets[word.target]
-    bits = word.bits or target.storage.bits[word.first]
+    bits = word.bits_in(target.storage)
     return (
         f"target_{word.target}",
         target.format,

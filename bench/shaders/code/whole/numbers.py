@@ -80,7 +80,7 @@ class Number:
     def carried_text(self, x: str, sign: str) -> str:
         """Return the GLSL expression for a share `x`, in [0, 1], with the sign of `sign`, as stored in texels. The
         share is kept above 0, so that rounding preserves the sign."""
-        bits = self.word.bits or self._storage.bits[self.word.first]
+        bits = self.word.bits_in(self._storage)
         least = glsl_value(least_carried(self._storage, bits))
         number = f"sign_not_zero({sign}) * clamp({x}, {least}, 1.0)"
         return f"{number} * 0.5 + 0.5" if self._carries_in_half else number

@@ -209,9 +209,7 @@ class Measuring {
   }
 }
 
-function nameOf({ encoding, storage, rounding }) {
-  return [encoding, storage, ...(rounding === "nearest" ? [] : [rounding])].join(" ");
-}
+const nameOf = ({ encoding, storage, rounding }) => codecLabel(encoding, storage, rounding);
 
 function cellsOfRow(row) {
   const ms = (value) => (value === null ? "" : value.toPrecision(3)), degrees = (value) => value.toPrecision(4);
