@@ -100,7 +100,7 @@ def _pages_of_run(folder: Path, done: Done, all_devices: Sequence[Device]) -> di
     """Return the HTML pages of a run's site by path: the run's page, which begins with the laboratory, and the pages
     that work without scripts."""
     run, gallery, specs = drawn_page(gathered(folder, done))
-    names = page.codecs(run, specs)
+    names = page.codecs(run)
     views, devices_there = _views(run), f"{FOLDER}/{INDEX}"
     titles = (
         {view.path: view.title for view in views} | ({CODECS: ENCODINGS} if names else {}) | {devices_there: DEVICES}

@@ -34,13 +34,13 @@ def best_by_bits(rows: Iterable[Row], figure: str, bits: str = "bits") -> list[l
 
 
 def by_bits(rows: Iterable[Row], figure: str, told: Callable[[Row], str], bits: str = "bits") -> str:
-    """Return the most accurate codecs for each bit count as text: "16 bits: octahedral in rg8 (mean 0.336°)".
+    """Return the most accurate codecs for each bit count as text: "octahedral in rg8 at 16 bits (0.336°), …".
 
     Args:
         told: a function from a row to the text in parentheses.
     """
     best = best_by_bits(rows, figure, bits)
-    return "; ".join(f"{tied[0][bits]:g} bits: {codecs(tied, alternatives)} ({told(tied[0])})" for tied in best)
+    return ", ".join(f"{codecs(tied, alternatives)} at {tied[0][bits]:g} bits ({told(tied[0])})" for tied in best)
 
 
 def codec_name(row: Row) -> str:

@@ -104,12 +104,6 @@ def spec(chart: Chart) -> Spec:
     return chart_spec | {"panels": [_panel(name, part) for name, part in parts]}
 
 
-def codecs(chart_spec: Spec) -> set[str]:
-    """Return the names of the codecs in a chart's data."""
-    columns = [table["codec"] for panel in chart_spec["panels"] for table in panel["tables"] if "codec" in table]
-    return {name for column in columns for name in (column["names"] if isinstance(column, dict) else column) if name}
-
-
 def rounded(value: Any) -> float | None:
     """Return a number rounded to four digits; None if it is not a finite number."""
     return float(f"{value:.4g}") if is_number(value) and math.isfinite(value) else None

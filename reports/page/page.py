@@ -17,7 +17,6 @@ from .. import tables
 from ..charts import spheres
 from ..charts.drawings import Drawing
 from ..charts.wire import Spec
-from ..charts.wire import codecs as drawn_codecs
 from ..sheets import Column, Row, Sheet, View
 from . import cards, embedded, live
 from .codec_key import CodecKey
@@ -28,8 +27,9 @@ from .sections import TableSection, whole
 from .verdict import is_number
 
 WEB = Path(__file__).parent / "web"
-SCRIPTS = ("tables.js", "state.js", "data.js", "choose.js", "zoom.js", "pictures.js", "cards.js", "compare.js")
-SCRIPTS += ("charts.js", "figures.js", "opener.js")
+# The view Choose may begin before the last script is read, and draws in a chart.
+SCRIPTS = ("tables.js", "state.js", "data.js", "charts.js", "choose.js", "zoom.js", "pictures.js", "cards.js")
+SCRIPTS += ("compare.js", "figures.js", "opener.js")
 # Text of more letters than this may break into lines.
 WRAPPED = 24
 
@@ -274,10 +274,9 @@ def template(name: str) -> Any:
     return environment.get_template(name)
 
 
-def codecs(run: Found, specs: Mapping[str, Spec]) -> list[str]:
+def codecs(run: Found) -> list[str]:
     """Return the names of all codecs that the page shows."""
     named = {pictured.codec for subject in run.subjects for pictured in subject.codecs if pictured.codec}
-    named |= {name for spec in specs.values() for name in drawn_codecs(spec)}
     encodings = run.encodings
     rows = [row for section in run.sections for row in section.rows]
     return sorted(named | {name for row in rows if " " in (name := _codec(row, encodings))})
@@ -302,7 +301,7 @@ def html(
         home: text for the home page of a site, which begins with the laboratory; None for a page on its own.
     """
     laboratory = live.script() if run.live else ""
-    names = codecs(run, specs)
+    names = codecs(run)
     most_cells = CELLS_BESIDE_MANY if len(names) > MANY_CODECS else MOST_CELLS
     parts = [part_of(run, section, specs, most_cells) for section in run.sections]
     leading = [part for part in parts if part.section.about.leads and part.is_there]

@@ -32,6 +32,12 @@ class Shown:
     ticks: set[str] = field(default_factory=set)
 
 
+def codecs_in(chart_spec: dict[str, Any]) -> set[str]:
+    """Return the names of the codecs in a chart's data."""
+    columns = [table["codec"] for panel in chart_spec["panels"] for table in panel["tables"] if "codec" in table]
+    return {name for column in columns for name in (column["names"] if isinstance(column, dict) else column) if name}
+
+
 def in_files(chart: Chart) -> list[Shown]:
     """Return the contents of each panel as matplotlib draws it."""
     figure = draw.figure([chart])
@@ -145,7 +151,7 @@ class Page:
         spec = wire.spec(chart)
         json.dumps(spec, allow_nan=False)
         figure = template("parts.html.j2").module.chart(report.Chart(drawings.of(chart), spec))
-        heights = self.page.evaluate(PUT, [str(figure), spec, sorted(wire.codecs(spec))])
+        heights = self.page.evaluate(PUT, [str(figure), spec, sorted(codecs_in(spec))])
         assert not self.said, self.said
         return heights
 

@@ -2,7 +2,7 @@
 
 import json
 
-from both_ways import rows_of_tables
+from both_ways import codecs_in, rows_of_tables
 
 from normalbench.bench.tables.registry import TABLES
 from normalbench.reports.charts import wire
@@ -44,4 +44,4 @@ def test_title_of_an_angle_axis_gives_degrees():
 
 def test_a_specification_is_plain_data():
     text = json.dumps(wire.spec(a_chart()), allow_nan=False)
-    assert wire.codecs(json.loads(text)) == {"xy rg8", HOSTILE}
+    assert codecs_in(json.loads(text)) == {"xy rg8", HOSTILE}

@@ -297,7 +297,7 @@ def test_compare_says_how_b_differs_in_a_sentence_and_what_a_code_cannot_hold(br
     page = Opened(browser, written, fragment="#v1/compare?a=octahedral%20rg8&b=spheremap%20rg8")
     page.says("[data-compare] .subhead", "Compared with A, B has a 50% larger mean error")
     sentence = page.page.locator("[data-compare] .subhead").text_content()
-    assert "the same largest error, a 50% smaller number of slots and" in sentence, sentence
+    assert "the same largest error, a 50% smaller number of slots to encode + decode and" in sentence, sentence
     page.page.evaluate("change({ b: 'hemi_octahedral rg8' })")
     page.says("[data-compare] .remark", "B, hemi_octahedral: ")
     assert page.page.locator("[data-compare] .pair-figures .best").count() == 0

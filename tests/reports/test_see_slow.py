@@ -409,7 +409,8 @@ def test_the_image_is_saved_with_names_and_figures(laboratory):
     canvas = laboratory.picture()
     with laboratory.page.expect_download() as download:
         laboratory.page.locator("[data-share=picture]").click()
-    assert download.value.suggested_filename == "normalbench.png"
+    assert download.value.suggested_filename == "normalbench-bonnet-zebra-exact-normals-octahedral-rgba8.png"
+    assert laboratory.page.evaluate("live.share.caption") == "bonnet, zebra"
     with Image.open(io.BytesIO(Path(download.value.path()).read_bytes())) as image:
         saved = np.asarray(image.convert("RGB")).astype(int)
     height, width, _ = canvas.shape

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from ....encodings.storages.storage import TARGET_FORMATS
 from ..table import Row
@@ -90,6 +90,18 @@ def _answer(row: Row) -> str:
     others = f"{row['held_back_db']:.1f} dB in scenes left out of the choice, " if is_held_back else ""
     frame = f"{row['psnr_db']:.1f} dB in the frame"
     return f"{_subject(row)}: {fewer}{worst}, {others}{frame}. {_visible(row['flip_p99'])}"
+
+
+def smallest(rows: Sequence[Row]) -> str:
+    """Return a sentence on the smallest recommendation without visible errors; empty for fewer than two limits."""
+    proposals = [row for row in rows if row["kind"] == PROPOSAL and not row["skipped"]]
+    seen = sorted(row["bytes_per_pixel"] for row in proposals if row["flip_p99"] <= INVISIBLE)
+    if len({row["limit"] for row in proposals}) < 2:
+        return ""
+    most = max(row["bytes_per_pixel"] for row in proposals)
+    if not seen:
+        return f"Errors are visible even with {most:g} bytes per pixel."
+    return f"{seen[0]:g} bytes per pixel are the fewest of these limits without visible errors in a still image."
 
 
 def _free(row: Row) -> str:

@@ -13,7 +13,7 @@ from .charts import charts, plotted
 from .contract import IN_LIGHT, as_known
 from .measure import in_order, measure
 from .question import question
-from .sentences import conditions, in_short, targets, told
+from .sentences import conditions, in_short, smallest, targets, told
 from .table import IMPROVED, MINE, PROPOSAL, TABLE, BudgetOptions, BudgetOutputs
 from .written import file_of
 
@@ -63,8 +63,9 @@ def _measure(steps: Sequence[Step], tick: Tick) -> Iterator[list[Row]]:
 
 
 def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
-    """Yield the recommendation for each limit, in sentences and target by target, and possible changes to a user's
-    layout; then a comparison of all layouts."""
+    """Yield a comparison of all layouts; then the recommendation for each limit, in sentences and target by target,
+    and possible changes to a user's layout."""
+    yield from _compared(rows, list(filter(None, [smallest(rows)])))
     for row in rows:
         if row["kind"] == MINE and row["changes"]:
             yield Sheet("", [], said=(f"{row['layout']}: {row['changes']}",))
@@ -73,7 +74,6 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
             held = targets(row)
             notes = (conditions(row),) if held else ()
             yield Sheet(f"{name}, target by target" if held else "", held, said=tuple(told(row)), notes=notes)
-    yield from _compared(rows)
 
 
 def _compared(rows: Sequence[Row], sentences: Sequence[str] = ()) -> Iterator[Sheet]:
@@ -93,6 +93,7 @@ def _short_sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """Yield a short answer for each limit, then all layouts if there are several."""
     answered: set[str] = set()
     rest = [f"{row['layout']}: {row['changes']}" for row in rows if row["kind"] == MINE and row["changes"]]
+    rest = [*filter(None, [smallest(rows)]), *rest]
     for row in rows:
         if row["kind"] not in WRITTEN:
             continue

@@ -70,7 +70,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         part = [row for row in measured if row[figure] is not None]
         if part:
             best = by_bits(part, figure, lambda row, figure=figure: f"{row[figure]:.2g}")
-            yield f"Most accurate (largest error) for {quantity}: {best}."
+            yield f"Most accurate for {quantity}, by largest error: {best}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -194,7 +194,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
             part = [row for row in worst.values() if (row["storage"] in BUFFERS) is is_buffer]
             if part:
                 best = by_bits(part, "relative", lambda row: f"{row['relative']:.2g}")
-                yield f"Largest error relative to the distance, {near:g} to {far:g}, {kind}: {best}."
+                yield f"Most accurate {kind} from {near:g} to {far:g}, by error relative to the distance: {best}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -40,6 +41,8 @@ from .table import DEPTHS, EffectsOptions, EffectsOutputs
 
 MAX_RAYS = 2**16
 NO_DEPTH = "none"
+# The RMS error is half a step of an 8-bit display.
+UNSEEN_DB = 20 * math.log10(2 * 255)
 NO_GBUFFER = "has no G-buffer for an effect to read"
 
 
@@ -160,10 +163,13 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         moved = having(part, "moved_percent")
         figure, form = ("moved_percent", "{:.2g}%") if moved else ("effect_psnr_db", "{:.1f} dB")
         ranked = sorted(moved or part, key=lambda row: row[figure])
-        ends = [f"{form.format(row[figure])} ({codec_name(row)})" for row in (ranked[0], ranked[-1])]
-        phrases.append(f"{effect} in {scene} {' to '.join(dict.fromkeys(ends))}{' of the rays moved' * bool(moved)}")
+        ends = dict.fromkeys(f"{form.format(row[figure])} ({codec_name(row)})" for row in (ranked[0], ranked[-1]))
+        hit = " of the rays hit something else" * bool(moved)
+        is_unseen = not moved and ranked[0][figure] >= UNSEEN_DB
+        change = "does not visibly depend on the encoding: at least" if is_unseen else "depends on it:"
+        phrases.append(f"{effect} in {scene} {change} {next(iter(ends)) if is_unseen else ' to '.join(ends)}{hit}")
     if phrases:
-        yield f"Effects, compared with exact normals: {'; '.join(phrases)}."
+        yield f"Compared with exact normals, {'; '.join(phrases)}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -85,7 +85,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
         part = [row for row in measured if (row["hands_lost"] is not None) is is_handed]
         if part:
             best = by_bits(part, "rotation_mean_deg", lambda row: f"{row['rotation_mean_deg']:.2g}°")
-            yield f"Most accurate {kind}, mean rotation: {best}."
+            yield f"Most accurate {kind}, by mean rotation: {best}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -109,11 +109,11 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     errors: dict[str, list[str]] = {}
     for row in sorted(sums, key=lambda row: _errors(row)[-1]):
         if row["lights"] == most:
-            ends = dict.fromkeys(f"{error:.1%}" for error in _errors(row))
-            errors.setdefault(way_of(row["light_buffer"]), []).append(f"{row['light_buffer']} {' to '.join(ends)}")
+            largest = f"{_errors(row)[-1]:.1%} in {row['light_buffer']}"
+            errors.setdefault(way_of(row["light_buffer"]), []).append(largest)
     if errors:
-        parts = "; ".join(f"{way} {', '.join([*of[:NAMED], *of[NAMED:][-1:]])}" for way, of in errors.items())
-        yield f"RMS error of {most} random lights, model to device: {parts}."
+        parts = "; ".join(f"{', '.join([*some[:NAMED], *some[NAMED:][-1:]])} ({way})" for way, some in errors.items())
+        yield f"After {most} random lights, the RMS error is up to {parts}."
 
 
 def _random(rows: Sequence[Row]) -> list[Row]:

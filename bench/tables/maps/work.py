@@ -123,15 +123,24 @@ def _key(case: MapCase) -> Row:
 
 
 def _verdict(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield a sentence for each set of normals with the best encoding in each format, the most accurate first."""
+    """Yield a sentence for each set of normals with the best encoding in each format, beginning with those of PCs and
+    consoles."""
     known = having(rows, "angle_rms_deg")
     for normals in dict.fromkeys(row["normals"] for row in known):
         part = [row for row in known if row["normals"] == normals]
-        best: dict[str, str] = {}
-        for row in sorted(part, key=lambda row: row["angle_mean_deg"]):
-            block = f"in {row['block']}" if FORMATS[row["block"]].is_compressed else "uncompressed"
-            best.setdefault(row["block"], f"{row['encoding']} {block} {row['angle_mean_deg']:.2g}°")
-        yield f"Mean error on {normals} by format: {', '.join(best.values())}."
+        best: dict[str, Row] = {}
+        for row in sorted(part, key=lambda row: (not row["block"].startswith("bc"), row["angle_mean_deg"])):
+            best.setdefault(row["block"], row)
+        first, *others = best.values()
+        rest = "".join(f"; {_in_format(row)} has {row['angle_mean_deg']:.2g}°" for row in others)
+        kind = "BC format" if len(best) > 1 and first["block"].startswith("bc") else "format"
+        mean = f"mean error {first['angle_mean_deg']:.2g}°"
+        yield f"On {normals}, {_in_format(first)} is the most accurate {kind} ({mean}{rest})."
+
+
+def _in_format(row: Row) -> str:
+    is_compressed = FORMATS[row["block"]].is_compressed
+    return f"{row['encoding']} in {row['block']}" if is_compressed else f"uncompressed {row['encoding']}"
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

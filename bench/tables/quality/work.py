@@ -195,7 +195,7 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     for normals in dict.fromkeys(row["normals"] for row in measured):
         part = [row for row in measured if row["normals"] == normals]
         best = by_bits(part, "angle_mean_deg", lambda row: f"{row['angle_mean_deg']:.2g}°")
-        yield f"Most accurate on {normals}, mean error: {best}."
+        yield f"Most accurate on {normals}, by mean error: {best}."
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:

@@ -214,34 +214,56 @@ class Cards {
     return [...new Map(alike.map(([name, one]) => [`${name.split(" ")[0]} ${one.numbers ?? name}`, one])).values()];
   }
 
-  // Where on the sphere it is off, and what it makes of a picture.
+  // Where on the sphere A and B are off, and what they make of an image: a row for each, with one scale where both share it.
   pictures(names, level = "h4") {
-    const made = names.flatMap((name) => [...this.globe(name), ...this.picture(name)]);
-    return made.length ? element("div", {}, element(level, {}, "Images"), element("div", { class: "globes" }, ...made)) : null;
+    const maps = names.map((name) => this.mapOf(name)), isOf = (name) => ({ codec }) => codec === name;
+    const counted = viewer?.data.subjects.map((subject) => [names.filter((name) => subject.codecs.some(isOf(name))).length, subject]) ?? [];
+    const [count, subject] = counted.reduce((best, other) => (other[0] > best[0] ? other : best), [0, null]);
+    const rows = ["mean", "largest"].map((which) => [`${which === "mean" ? "Mean" : "Largest"} angle in each direction`, maps.map((map) => map && this.globe(map, which)), maps.map((map) => map && map.closest(".globes").previousElementSibling)]);
+    if (count) {
+      const isImage = subject.of === "image", scale = isImage ? this.scaleTo(`${FULL_APART} of 255`) : element("p", { class: "note" }, `${viewer.data.articles.gain}× |error|`);
+      rows.push([`Difference of the image: ${subject.title}`, names.map((name) => this.picture(subject, subject.codecs.find(isOf(name)), isImage)), names.map(() => scale)]);
+    }
+    const shown = rows.filter(([, cells]) => cells.some(Boolean));
+    if (!shown.length) return null;
+    const sides = CODECS.filter((side) => names.includes(state[side])), heads = names.map((name, at) => element("p", {}, element("b", { class: `side-${sides[at]}` }, `${sides[at].toUpperCase()} `), ...broken(name)));
+    return element("div", {}, element(level, {}, "Images"), element("div", { class: "twins", style: `--count: ${names.length}` }, ...heads, ...shown.flatMap(([title, cells, scales]) => this.twins(title, cells, scales))));
+  }
+
+  // A row of images; what a page lacks is said in its place.
+  twins(title, cells, scales) {
+    const isShared = new Set(scales.filter(Boolean)).size < 2, copies = scales.map((scale) => scale && scale.cloneNode(true));
+    const figures = cells.map((cell, at) => element("figure", {}, cell ?? element("p", { class: "note" }, "Not in this page."), ...(isShared || !copies[at] ? [] : [copies[at]])));
+    return [element("h5", { class: "whole" }, title), ...figures, ...(isShared ? [element("div", { class: "whole" }, copies.find(Boolean))] : [])];
+  }
+
+  // The colours from 0 to what full colour stands for.
+  scaleTo(most) {
+    const strip = element("div", { class: "strip", role: "img", "aria-label": `colours from 0 to ${most}`, style: `background: linear-gradient(to right, ${viewer.data.colours.join(", ")})` });
+    return element("div", { class: "scale ends" }, strip, element("div", { class: "ticks", "aria-hidden": "true" }, element("span", { style: "left: 0" }, "0"), element("span", { style: "left: 100%" }, `${most} and more`)));
   }
 
   // The map of a codec, or of one that stores the same numbers.
-  globe(name) {
+  mapOf(name) {
     const { numbers } = this.codecs[name], same = (other) => numbers && this.codecs[other]?.numbers === numbers && other.split(" ")[0] === name.split(" ")[0];
     const maps = Array.from(document.querySelectorAll("#sphere figure[data-codec]")), found = maps.find(({ dataset }) => dataset.codec === name) ?? maps.find(({ dataset }) => same(dataset.codec));
-    if (!found) return [];
-    const like = found.dataset.codec === name ? "" : ` (of ${found.dataset.codec}, the same numbers)`;
-    return Array.from(found.querySelectorAll("img"), (image) => {
-      const copy = image.cloneNode();
-      copy.removeAttribute("data-which");
-      copy.hidden = false;
-      return element("figure", {}, copy, element("figcaption", {}, `${name}${like}: ${image.dataset.which} angle in each direction. `, element("a", { href: "#sphere" }, "Scale and other maps")));
-    });
+    return found;
   }
 
-  picture(name) {
-    const subject = viewer?.data.subjects.find((one) => one.of === "normals" && one.codecs.some(({ codec }) => codec === name)) ?? viewer?.data.subjects.find((one) => one.codecs.some(({ codec }) => codec === name));
-    const codec = subject?.codecs.find((one) => one.codec === name);
-    if (!codec) return [];
-    const view = subject.of === "image" ? "apart" : "error", canvas = element("canvas", { role: "img", "aria-label": `${name}, ${subject.title}` });
-    pixelsOf(subject.original, subject.width, subject.height).then((exact) => Planes.of(subject, codec, exact)).then((planes) => planes.drawSmall(canvas, view, FULL_APART, view === "error", 2 * THUMB), () => canvas.remove());
-    const said = view === "error" ? `its error ${viewer.data.articles.gain}×` : `its image's difference, full colour at ${FULL_APART} of 255`;
-    return [element("figure", {}, canvas, element("figcaption", {}, `${name} on ${subject.title}: ${said}. `, element("button", { type: "button", class: "pick", onclick: () => viewer.open(subject, codec, view) }, "Look closer")))];
+  globe(map, which) {
+    const copy = map.querySelector(`[data-which="${which}"]`).cloneNode();
+    copy.removeAttribute("data-which");
+    copy.hidden = false;
+    return copy;
+  }
+
+  // A codec's image; a click opens it in the viewer.
+  picture(subject, codec, isImage) {
+    if (!codec) return null;
+    const view = isImage ? "apart" : "error", canvas = element("canvas", { role: "img", "aria-label": `${codec.label}, ${subject.title}` });
+    const button = element("button", { type: "button", title: "Look closer", onclick: () => viewer.open(subject, codec, view) }, canvas);
+    pixelsOf(subject.original, subject.width, subject.height).then((exact) => Planes.of(subject, codec, exact)).then((planes) => planes.drawSmall(canvas, view, FULL_APART, !isImage, 2 * THUMB), () => button.remove());
+    return button;
   }
 
   // The code to copy, as `normalbench code` writes it.
@@ -336,7 +358,7 @@ class Cards {
       const { storage, mean, largest, slots } = this.codecs[other], figures = [bitsText(this.codecs[other]), mean === undefined ? "" : degrees(mean), largest === undefined ? "" : degrees(largest), slots ?? ""];
       return element("tr", { "data-codec": other }, element("th", { scope: "row" }, nameButton(other, other)), element("td", { class: "take" }, ...sideButtons(other)), element("td", {}, storage ?? ""), ...figures.map((text) => element("td", { class: "n" }, String(text))));
     };
-    const heads = ["codec", "A or B", "storage", "bits", "mean", "largest", "slots"].map((title, at) => element("th", { scope: "col", ...(at > 2 ? { class: "n" } : {}) }, title));
+    const heads = ["codec", "A or B", "storage", "bits", "mean", "largest", "slots"].map((title, at) => element("th", { scope: "col", class: at > 2 ? "n" : at === 1 ? "take" : "" }, title));
     const table = element("table", {}, element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...others.map(line)));
     return element("div", {}, element("h4", {}, `${encoding} in other storages`), element("div", { class: "scroll", role: "region", "aria-label": "Other storages", tabindex: "0" }, table));
   }

@@ -117,7 +117,7 @@ function askedOf(question, state) {
 // What a code occupies; of one that has fewer codes than that, also what these are worth.
 const bitsText = ({ bits, codes }, unit = "") => (bits ? `${bits}${unit}${codes ? `, for codes of ${codes}` : ""}` : "");
 const degrees = (value) => (value === null ? "" : `${Number(value.toPrecision(3))}°`);
-const IMAGE = "worst image";
+const IMAGE = "worst image, best axis";
 const COMPARED = [
   ["mean error", (code) => degrees(code.mean), (code) => code.mean, "less"],
   ["largest error", (code) => degrees(code.largest), (code) => code.largest, "less"],
@@ -208,7 +208,8 @@ class Choose {
     for (const plot of this.root.querySelectorAll(`[data-of="${question.chart}"] .plot`)) this.plot(plot);
     const [reply, reasons] = ["reply", "reasons"].map((part) => this.root.querySelector(`[data-own-${part}]`));
     for (const part of [reply, reasons]) part.hidden = !isOwn;
-    reply.replaceChildren(element("h2", { class: "lead" }, sentenceOf(question, asked, found)));
+    const [answer, ...others] = sentenceOf(question, asked, found).split(/(?<=\.) /);
+    reply.replaceChildren(element("h2", { class: "lead" }, answer), ...(others.length ? [element("p", { class: "subhead" }, others.join(" "))] : []));
     reasons.replaceChildren(element("details", { class: "aside" }, element("summary", {}, "Reasons"), element("ul", {}, ...this.said(found, asked, question).map((line) => element("li", {}, line)))));
     this.tile(found, asked, question);
     this.offerCode(found);
@@ -236,6 +237,7 @@ class Choose {
     const figure = plot.closest("figure"), title = !left.length ? `${question.where}: no encoding is left` : this.title.replace("{where}", question.where).replace("{front}", front.length).replace("{all}", left.length);
     figure.dataset.title = title;
     figure.querySelector("[data-finding]").textContent = title;
+    for (const of of toolsOf(figure).querySelectorAll("button > span")) of.textContent = `: ${title}`;
     view.draw();
   }
 
@@ -329,7 +331,8 @@ class Choose {
   leftOut({ out, why }) {
     const reasons = new Map();
     for (const code of out) reasons.set(why.get(code), [...(reasons.get(why.get(code)) ?? []), code.name]);
-    const lines = Array.from(reasons, ([reason, names]) => element("p", {}, `${names.join(", ")}: ${reason}.`));
+    // A page has controls, not options.
+    const lines = Array.from(reasons, ([reason, names]) => element("p", {}, `${names.join(", ")}: ${reason.replace(/; --\S+ allows \w+$/, "")}.`));
     return element("details", { class: "aside" }, element("summary", {}, `Excluded (${out.length})`), ...lines);
   }
 }

@@ -48,7 +48,7 @@ function apartText([a, b], constants) {
     return Math.abs(Math.log2(times)) < 0.03 ? [`the same ${title}`] : [times < 1 ? `a ${Math.round(100 * (1 - times))}% ${less} ${title}` : times < 2 ? `a ${Math.round(100 * (times - 1))}% ${more} ${title}` : `${Number(times.toPrecision(2))} times the ${title.replace("number of ", "")}`];
   };
   const image = a.image === null || b.image === null ? [] : isImageTie(a, b, constants) ? ["a worst image that ties"] : [`a worst image ${Math.abs(b.image - a.image).toFixed(1)} dB ${b.image > a.image ? "better" : "worse"}`];
-  const parts = [...of(a.mean, b.mean, "mean error", "larger", "smaller"), ...of(a.largest, b.largest, "largest error", "larger", "smaller"), ...of(a.once, b.once, "number of slots", "larger", "smaller"), ...image];
+  const parts = [...of(a.mean, b.mean, "mean error", "larger", "smaller"), ...of(a.largest, b.largest, "largest error", "larger", "smaller"), ...of(a.once, b.once, "number of slots to encode + decode", "larger", "smaller"), ...image];
   return parts.length ? `Compared with A, B has ${parts.length > 1 ? `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}` : parts[0]}.` : "";
 }
 

@@ -13,12 +13,14 @@ const normalViews = ({ gain, power }) => ({
   code: "stored code",
   decoded: "decoded normal",
 });
-const IMAGE_VIEWS = { apart: "difference", final: "image", flip: "FLIP" };
+const IMAGE_VIEWS = { final: "image", apart: "difference", flip: "FLIP" };
 // What full colour stands for.
 const ANGLE_SCALES = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 const APART_SCALES = [1, 2, 4, 8, 16, 32, 64, 128, 255];
 // Pixels that the lens shows on a side, and how large each is; how wide a small picture is; how many codecs are kept.
 const LENS = 11, CELL = 12, THUMB = 240, KEPT = 8, SEEN = 2;
+// How far an image is enlarged at first, about the square of so many pixels where it is off most.
+const CLOSE = 3, SQUARE = 40;
 
 function penOf(canvas) {
   return canvas.getContext("2d", { willReadFrequently: true });
@@ -343,11 +345,27 @@ class Viewer {
       const both = await Promise.all(SIDES.map((side) => this.planes(this.side(side).value)));
       if (turn !== this.turn) return;
       this.fitScale(both);
+      if (subject.of === "image") this.cropTo(both);
     } catch (error) {
       this.say(error.message);
     }
     this.isReady = true;
     await this.show();
+    this.root.dataset.begun = "";
+  }
+
+  // Enlarged where both sides together are off most: whole, an image shows little of what codes do to it.
+  cropTo(both) {
+    const { width, height } = this.subject, across = Math.ceil(width / SQUARE), sums = new Float64Array(across * Math.ceil(height / SQUARE));
+    for (const planes of both.filter(({ apart }) => apart)) {
+      for (let i = 0; i < width * height; i++) sums[across * Math.floor(i / width / SQUARE) + Math.floor((i % width) / SQUARE)] += planes.difference(i);
+    }
+    const most = sums.indexOf(Math.max(...sums));
+    if (!sums[most]) return;
+    this.place = { x: Math.min(width - 1, (most % across + 0.5) * SQUARE | 0), y: Math.min(height - 1, (Math.floor(most / across) + 0.5) * SQUARE | 0) };
+    this.zoom.k = CLOSE;
+    this.zoom.lookAt(this.place);
+    this.one("[data-step]").prepend("Opened where the images are furthest from exact; Whole image shows all. ");
   }
 
   fillLists(subject) {

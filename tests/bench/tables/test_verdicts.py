@@ -28,7 +28,7 @@ def test_results_within_half_a_decibel_tie_and_useless_extra_bits_are_omitted():
 
 def test_a_sentence_lists_each_bit_count_once():
     text = by_bits(ROWS, "error", lambda row: f"{row['error']:.2g}°")
-    assert text == "16 bits: octahedral_precise or octahedral in rg8 (0.3°); 20 bits: octahedral in rgb10a2 (0.1°)"
+    assert text == "octahedral_precise or octahedral in rg8 at 16 bits (0.3°), octahedral in rgb10a2 at 20 bits (0.1°)"
 
 
 @pytest.mark.parametrize(

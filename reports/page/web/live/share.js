@@ -22,7 +22,7 @@ class Share {
       else if (one.matches("[type=range]")) made[name] = Number(one.value);
       else if (one.matches("[type=checkbox]")) made[name] = one.checked;
     }
-    if (made.subject === DROPPED) made.subject = this.first?.subject ?? FIRST_SCENE;
+    if (made.subject === DROPPED) Object.assign(made, { subject: this.first?.subject ?? FIRST_SCENE, file: this.see.scene.title });
     const { text, storage, domain } = this.own.field;
     return { ...made, text: text.value, storage: storage.value, domain: domain.value };
   }
@@ -81,8 +81,9 @@ class Share {
       sayUnknown(`The laboratory's part of the address is damaged: ${error.message.replace(/\.$/, "")}.`);
       found = {};
     }
-    const { text, ...values } = { ...this.usual, ...found }, { own } = this;
+    const { text, file, ...values } = { ...this.usual, ...found }, { own } = this;
     own.wanted = [];
+    if (file) sayUnknown(`The link was made with ${String(file).slice(0, 40)}, which a link does not contain: open the file here to see the same.`);
     for (const [name, value] of Object.entries(values)) if (!this.set(name, value)) wrong.push(`${name} ${String(value).slice(0, 40)}`);
     if (wrong.length) sayUnknown(`The address names ${wrong.slice(0, 5).join(" and ")}, which the laboratory does not have.`);
     this.see.aim({});
@@ -110,9 +111,20 @@ class Share {
     return isThere;
   }
 
+  get scene() {
+    return this.see.control.subject.selectedOptions[0].textContent;
+  }
+
+  // What the picture shows, and at which setting, as the controls say it.
+  get caption() {
+    const { control, out } = this.see;
+    const settings = [control.shown.selectedOptions[0].textContent, control.roughness.disabled ? "" : `roughness ${out.roughness.textContent}`, control.legend.hidden ? "" : `full colour at ${out.most.textContent}`];
+    return [this.scene, ...settings].filter(Boolean).join(", ");
+  }
+
   // The picture as a PNG file, with the names of both sides and their figures.
   async picture() {
-    const { see } = this, { canvas } = see, [width, height] = see.size, size = Math.max(12, Math.round(width / 75)), bar = 4 * size;
+    const { see } = this, { canvas } = see, [width, height] = see.size, size = Math.max(12, Math.round(width / 75)), bar = 5.5 * size;
     if (canvas.width !== width) await see.rest();
     const made = element("canvas", { width, height: height + bar }), pen = made.getContext("2d"), at = Math.round((width * see.value("divider")) / 100);
     pen.drawImage(canvas, 0, 0);
@@ -129,10 +141,13 @@ class Share {
       pen.textAlign = align;
       for (const [line, text] of (await this.lines(side)).entries()) pen.fillText(text, x, height + (1.5 + 1.5 * line) * size, width / 2 - 2 * size);
     }
+    pen.textAlign = "left";
+    pen.fillText(this.caption, size, height + 4.5 * size, width - 2 * size);
     const blob = await new Promise((resolve) => made.toBlob(resolve, "image/png")), href = URL.createObjectURL(blob);
-    save("normalbench.png", href);
+    const name = `${["normalbench", this.scene, see.control.shown.value, ...["left", "right"].filter((side) => isWhole[side]).map((side) => see.control[side].value)].join("-").replace(/[^\w.]+/g, "-")}.png`;
+    save(name, href);
     setTimeout(() => URL.revokeObjectURL(href), 1000);
-    this.field.said.textContent = "Saved as normalbench.png";
+    this.field.said.textContent = `Saved as ${name}`;
   }
 
   // A side's name and figures.

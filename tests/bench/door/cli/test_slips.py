@@ -305,7 +305,7 @@ def test_text_that_is_not_a_count_is_refused(text):
         whole_number(text)
 
 
-VERDICT = "Most accurate on sphere, mean error: 16 bits: octahedral in rg8 (0.33°)."
+VERDICT = "Most accurate on sphere, by mean error: octahedral in rg8 at 16 bits (0.33°)."
 
 
 @pytest.mark.parametrize(
