@@ -213,7 +213,10 @@ class Laboratory(Opened):
         if self.state() != self.fresh:
             self.load_anew()
             self.open()
-            assert self.state() == self.fresh, "a page loaded anew is as the first was"
+            anew = self.state()
+            assert anew == self.fresh, {
+                name: (anew[name], self.fresh[name]) for name in anew if anew[name] != self.fresh[name]
+            }
         self.said.clear()
 
     def settle(self) -> None:
