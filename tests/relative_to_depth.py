@@ -1,16 +1,21 @@
 """Measure the gain of storing a normal in the frame of the depth's normal, by surface, next to two more bits.
 
     python -m tests.relative_to_depth
+    python -m tests.relative_to_depth --picture
 
-prints the table of docs/beyond-octahedral.md, in half a minute. The frame is that of T. Duff et al., Building an
-Orthonormal Basis, Revisited (2017); a local number c is stored as sign(c) |c|^p.
+print the table of docs/beyond-octahedral.md, in half a minute, and draw its picture. The frame is that of T. Duff et
+al., Building an Orthonormal Basis, Revisited (2017); a local number c is stored as sign(c) |c|^p.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import numpy as np
+from matplotlib import colormaps
+from PIL import Image
 
 import normalbench as nb
 
@@ -21,6 +26,12 @@ POWER = 0.5
 UNROUNDED = "octahedral/rg32f"
 # Degrees below which an angle is rounding, and decibels above which all of it is.
 EXACT, MOST_DB = 1e-5, 60.0
+SHOWN, PICTURE = (
+    ("mapped mirror", "mapped sphere", "segmented sphere"),
+    Path(__file__).parents[1] / "docs" / "pictures" / "relative-to-depth.png",
+)
+# Pixels of the picture's panels.
+ACROSS = 160
 # How depth is kept: a float of the share near / distance, and 24 or 16 bits of it.
 DEPTHS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "R32F": lambda share: share.astype(np.float32).astype(np.float64),
@@ -104,10 +115,11 @@ def basis(n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.stack([1 + sign * x * x * a, sign * b, -sign * x], -1), np.stack([b, sign + y * y * a, -y], -1)
 
 
-def from_depth(share: np.ndarray) -> np.ndarray:
+def from_depth(share: np.ndarray, kind: type = np.float64) -> np.ndarray:
     """Return the normal that depth gives at each pixel: in each direction the neighbours on the side on which depth
-    goes on straight, five taps a direction (2 d1 - d2 - d0 is the least)."""
-    place = rays() * (NEAR / np.maximum(share, 1e-9))[..., None]
+    goes on straight, five taps a direction (2 d1 - d2 - d0 is the least); computed in `kind`."""
+    share = share.astype(kind)
+    place = rays().astype(kind) * (kind(NEAR) / np.maximum(share, kind(1e-9)))[..., None]
 
     def step(axis: int) -> np.ndarray:
         d = [np.roll(share, -k, axis) for k in (-2, -1, 0, 1, 2)]
@@ -117,8 +129,8 @@ def from_depth(share: np.ndarray) -> np.ndarray:
 
     g = np.cross(step(0), step(1))
     norm = np.linalg.norm(g, axis=-1, keepdims=True)
-    g = np.where(norm > 0, g / np.maximum(norm, 1e-300), [0.0, 0.0, 1.0])
-    return np.where((g * place).sum(-1, keepdims=True) > 0, -g, g)
+    g = np.where(norm > 0, g / np.maximum(norm, kind(1e-30)), [0.0, 0.0, 1.0])
+    return np.where((g * place).sum(-1, keepdims=True) > 0, -g, g).astype(np.float64)
 
 
 def encoded(n: np.ndarray) -> np.ndarray:
@@ -154,7 +166,7 @@ def angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def moved(share: np.ndarray, kind: str, rng: np.random.Generator) -> np.ndarray:
-    """Return depth as a reader sees it whose depth is off by one unit of its storage in half of the pixels."""
+    """Return depth as a reader sees it whose depth is off by one unit of its storage in two of three pixels."""
     ulp = np.spacing(share.astype(np.float32)).astype(np.float64) if kind == "R32F" else 1 / (2 ** int(kind[1:]) - 1)
     return np.where(share > 0, share + ulp * rng.integers(-1, 2, share.shape), share)
 
@@ -187,10 +199,64 @@ def seen_around(seen: np.ndarray) -> np.ndarray:
     return np.logical_and.reduce([np.roll(seen, k, axis) for axis, k in steps])
 
 
+def _rms(angle: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(angle**2))) if angle.size else 0.0
+
+
+def asides(bits: int = 8) -> Iterator[str]:
+    """Yield lines on what the table leaves out: maps' slopes, silhouettes, arithmetic, more bits, larger images."""
+    for name, depth, n, flat in surfaces():
+        seen = depth > 0
+        share = np.where(seen, NEAR / np.maximum(depth, NEAR), 0.0)
+        g, other = from_depth(DEPTHS["D24"](share)), from_depth(DEPTHS["D24"](share), np.float32)
+        edges, inner = seen & ~seen_around(seen), seen & seen_around(seen)
+        plain, back = (angles(n, turned) for turned in (decoded(stored(encoded(n), bits)), relative(n, g, g, bits)))
+        ten = [
+            np.sqrt(np.mean(angles(n, turned)[inner] ** 2))
+            for turned in (decoded(stored(encoded(n), 10)), relative(n, g, g, 10))
+        ]
+        torn = 100 * np.mean(angles(n, relative(n, g, other, bits))[inner] > 1)
+        yield (
+            f"{name}: tilt {np.sqrt(np.mean(angles(n, flat)[inner] ** 2)):.0f} degrees RMS; 99 % and largest angle"
+            f" {' and '.join(f'{np.percentile(a[inner], 99):.2f}, {a[inner].max():.2f}' for a in (plain, back))};"
+            f" edges {' and '.join(f'{_rms(a[edges]):.2f}' for a in (plain, back))};"
+            f" 10:10 gains {20 * np.log10(ten[0] / max(ten[1], EXACT)):.1f} dB; reader in float32 {torn:.2f} % off"
+        )
+
+
+def picture() -> None:
+    """Draw the page's picture: the angles on three surfaces, from 0 to 1 degree, of octahedral 8:8 and 9:9, of the
+    same relative to depth's normal in D24, and of a reader whose D16 is off."""
+    rng, lines = np.random.default_rng(7), []
+    for name, depth, n, _ in surfaces():
+        if name not in SHOWN:
+            continue
+        seen = depth > 0
+        share = np.where(seen, NEAR / np.maximum(depth, NEAR), 0.0)
+        fine, coarse = (from_depth(DEPTHS[kind](share)) for kind in ("D24", "D16"))
+        off = from_depth(moved(DEPTHS["D16"](share), "D16", rng))
+        turned = (
+            decoded(stored(encoded(n), 8)),
+            decoded(stored(encoded(n), 9)),
+            relative(n, fine, fine, 8),
+            relative(n, coarse, off, 8),
+        )
+        y, x = (int(place.mean()) - ACROSS // 2 for place in np.nonzero(seen))
+        crop = np.s_[y : y + ACROSS, x : x + ACROSS]
+        lines.append(np.hstack([np.where(seen, np.clip(angles(n, other), 0, 1), 0)[crop] for other in turned]))
+    image = Image.fromarray(np.round(255 * colormaps["viridis"](np.vstack(lines))[..., :3]).astype(np.uint8))
+    image.quantize(32).save(PICTURE, optimize=True)
+
+
 def main() -> None:
-    """Print the rows of the page's table."""
+    """Print the rows of the page's table and the lines next to it; with --picture, draw the page's picture."""
+    if "--picture" in sys.argv[1:]:
+        return picture()
+    for line in asides():
+        print(line)
     for cells in rows():
         print("|", " | ".join(cells), "|")
+    return None
 
 
 if __name__ == "__main__":

@@ -227,11 +227,6 @@ ALL = (
         lines=RENDERED,
     ),
     Table(
-        marker="normalbench list pipelines",
-        rows=("list pipelines",),
-        columns=(key("pipeline", "name"), Column("passes", "holds")),
-    ),
-    Table(
         marker="normalbench lights",
         rows=(f"lights --experiment equal --sum 1 --counts 8,64,256 --light-buffer {LIGHT_BUFFERS}",),
         columns=(
