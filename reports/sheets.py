@@ -127,6 +127,7 @@ class Sheet:
         said: paragraphs above the rows; the first is the answer.
         aside: paragraphs after `said` that are not part of the answer; a page folds them.
         keys: the values that the title states for all rows, by column.
+        is_ranked: whether a page marks the best figures.
     """
 
     title: str
@@ -136,3 +137,4 @@ class Sheet:
     said: tuple[str, ...] = ()
     aside: tuple[str, ...] = ()
     keys: Mapping[str, Any] = field(default_factory=dict)
+    is_ranked: bool = True

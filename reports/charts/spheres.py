@@ -21,6 +21,8 @@ from .looks import as_text
 FINE = 8
 # A page has at most so many maps: each takes 11 kB and two pictures.
 MOST = 64
+# Of a colour scale.
+FEWEST_TICKS = 3
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,10 @@ def _globes(bits: int, maps: Sequence[SphereMap]) -> Globes:
             Globe(sphere_map.key.label, mean, largest, f"{figures}; largest {np.nanmax(sphere_map.max_deg):.3g}")
         )
     low, high = limits
-    values = [m * 10.0**e for e in range(-7, 4) for m in (1, 2, 5) if low <= m * 10.0**e <= high]
+    values: list[float] = []
+    for steps in ((1, 2, 5), range(1, 10)):
+        if len(values) < FEWEST_TICKS:
+            values = [m * 10.0**e for e in range(-7, 4) for m in steps if low <= m * 10.0**e <= high]
     ticks = [(100 * math.log(v / low) / math.log(high / low), f"{v:g}") for v in values]
     return Globes(bits, drawn_globes, low, high, ticks)
 

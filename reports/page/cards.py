@@ -102,6 +102,7 @@ def _stored(label: str, known: Mapping[str, Any]) -> tuple[str, str]:
 
 def _headline(row: Row) -> dict[str, Any]:
     figures: Row = {"mean": _first(row, MEAN), "largest": _first(row, LARGEST), "slots": _first(row, SLOTS)}
+    figures |= {"sampled": _first(row, LARGEST[:1]) is None or None}
     figures |= {"bits": _first(row, ("bits",)), "of": str(row.get("normals"))}
     return {name: value for name, value in figures.items() if value is not None}
 

@@ -112,7 +112,7 @@ def sheet_table(sheet: Sheet, column: Callable[[str], Column], encodings: Contai
     rows = whole(sheet.rows)
     shown, constants = tables.without_constants(rows)
     heads = [Heading(column(name), tables.title_of(name), tables.is_numeric(shown, name)) for name in shown[0]]
-    numbers = [head.column for head in heads if head.numeric and head.column.better]
+    numbers = [head.column for head in heads if sheet.is_ranked and head.numeric and head.column.better]
     best = {cell for figure in numbers for cell in _best(shown, rows, figure)}
     lines = [
         Line(

@@ -256,7 +256,7 @@ def test_the_answer_shows_reflections_cost_and_bits(browser, tmp_path):
     decided |= {"environment": "lamp", "dither": "none", "frames": 1}
     metal = [decided | {"threshold": limit, "roughness": rough} for limit, rough in (("0.1", 0.49), ("0.05", 0.62))]
     plaster = [row | {"object": "plaster", "environment": "sun", "roughness": 0.0} for row in metal]
-    rows = [pick_row("octahedral", 0.2, 9), pick_row("spheremap", 0.3, 10)]
+    rows = [pick_row("octahedral", 0.2, 9) | {"angle_sup_deg": 1.0}, pick_row("spheremap", 0.3, 10)]
     tables = {"pick": rows, "roughness": [TABLES["roughness"].empty([]) | row for row in (*plaster, *metal)]}
     folder = a_run(tmp_path / "run", tables, request={"tables": ["pick", "roughness"]})
     width, height = 390, 844
@@ -291,13 +291,24 @@ def test_the_tab_is_called_after_the_answer_or_the_codecs_that_are_shown(browser
 
 def test_compare_says_how_b_differs_in_a_sentence_and_what_a_code_cannot_hold(browser, tmp_path):
     lost = pick_row("hemi_octahedral", 30.0, 9) | {"domain": "hemisphere", "lost_percent": 50.0}
-    rows = [pick_row("octahedral", 0.2, 10), pick_row("spheremap", 0.3, 5), lost]
+    known = {"angle_sup_deg": 1.0}
+    rows = [
+        pick_row("octahedral", 0.2, 10) | known,
+        pick_row("spheremap", 0.3, 5) | known,
+        lost,
+        pick_row("cube", 0.1, 70),
+    ]
     folder = a_run(tmp_path / "run", {"pick": rows}, request={"tables": ["pick"]})
     written = write_report(folder, read_run(folder), folder / "report.html")
     page = Opened(browser, written, fragment="#v1/compare?a=octahedral%20rg8&b=spheremap%20rg8")
     page.says("[data-compare] .subhead", "Compared with A, B has a 50% larger mean error")
     sentence = page.page.locator("[data-compare] .subhead").text_content()
-    assert "the same largest error, a 50% smaller number of slots to encode + decode and" in sentence, sentence
+    assert "the same largest error, the same cost with 4 decoding passes and" in sentence, sentence
+    largest = page.page.locator("[data-compare] .pair-figures tbody tr", has_text="largest error").locator("td")
+    page.page.evaluate("change({ b: 'cube rg8' })")
+    page.says("[data-compare] .subhead", "has a mean error 2 times smaller, a 68% higher cost with 4 decoding passes")
+    assert largest.all_text_contents() == ["1\N{DEGREE SIGN}", "\N{GREATER-THAN OR EQUAL TO} 1\N{DEGREE SIGN}"]
+    assert "largest" not in page.page.locator("[data-compare] .subhead").text_content(), "only one is a supremum"
     page.page.evaluate("change({ b: 'hemi_octahedral rg8' })")
     page.says("[data-compare] .remark", "B, hemi_octahedral: ")
     assert page.page.locator("[data-compare] .pair-figures .best").count() == 0

@@ -107,13 +107,13 @@ def test_the_lens_shows_and_describes_the_pixels_at_the_pointer(opened, results)
     code = " ".join(f"{number:08b}" for number in arrays["codes"][60, 100])
     degrees = 2.0 ** (-20 + (arrays["angle"][60, 100] - 1.0) / 8)
     assert text.startswith(f"code {code}, decoded (") and text.endswith(f"off by {float(f'{degrees:.2g}'):g}°")
-    assert opened.texts("[data-values]")[0].startswith("Pixel 200, 120, exact normal (")
+    assert opened.texts("[data-values]")[0].startswith("Pixel 100, 60 (200, 120 of the run's image), exact normal (")
     opened.page.locator("#viewer .stage").focus()
     opened.page.keyboard.press("ArrowRight")
     opened.page.keyboard.press("Shift+ArrowDown")
-    assert opened.texts("[data-values]")[0].startswith("Pixel 202, 140,")
+    assert opened.texts("[data-values]")[0].startswith("Pixel 101, 70 (202, 140 ")
     opened.page.locator("#lens-x").fill("5")
-    assert opened.texts("[data-values]")[0].startswith("Pixel 10, 140,")
+    assert opened.texts("[data-values]")[0].startswith("Pixel 5, 70 (10, 140 ")
 
 
 WITHOUT = """(name) => {

@@ -64,7 +64,7 @@ def lights_chart(points: Sequence[Row], way: str) -> Chart:
 def _equal_rows(rows: Sequence[Row]) -> list[Row]:
     """Return the points for equal lights with the smallest sum: the error in each buffer's worst channel."""
     total = min((row["sum"] for row in rows), default=0.0)
-    panel = f"equal lights that sum to {total:g}, worst channel"
+    panel = f"equal lights, sum {total:g}"
     return _worst(panel, [(row, abs(row["error"])) for row in rows if row["sum"] == total])
 
 

@@ -108,6 +108,7 @@ def _code(row: Row) -> dict[str, Any]:
         "turns": _turns(row),
         "met": largest(row),
         "largest": largest_mixed(row),
+        "sampled": row["angle_sup_deg"] is None,
         "mean": mean(row),
         "encode": row["encode_slots"],
         "decode": row["decode_slots"],

@@ -222,10 +222,11 @@ def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
         if row["psnr_db"] is not None:
             groups.setdefault((shown_scene(row), row["pipeline"], row["layout"]), []).append(row)
     for (scene, pipeline, layout), part in groups.items():
-        order = sorted(part, key=lambda row: -row["psnr_db"])
+        # One orientation ranks nothing.
+        order = sorted(part, key=lambda row: str(row["encoding"]))
         where = f"{scene} by {pipeline}" + (f" in layout {layout}" if layout not in (None, "fp32") else "")
         shown = [{name: row[name] for name in names} for row in order]
-        yield Sheet(f"the image: {where}, dB as displayed", shown)
+        yield Sheet(f"the image: {where}, dB as displayed", shown, is_ranked=False)
 
 
 def _finish(rows: Sequence[Row]) -> list[Row]:

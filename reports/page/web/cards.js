@@ -129,17 +129,17 @@ class Cards {
     const cell = (value, text, of) => element("td", { class: "n", ...(value === undefined || value === null ? {} : { "data-v": String(value) }) }, of ? `${text}\n${of}` : text);
     const line = (name) => {
       const { mean, largest, slots, of, domain, codes } = this.codecs[name], bits = this.bits(name), aside = [of === this.usual ? "" : of, { hemisphere: "only z >= 0", view: "only facing" }[domain]].filter(Boolean).join(", ");
-      const figures = [cell(bits, bitsText({ bits }), codes ? `codes of ${codes}` : ""), cell(mean, mean === undefined ? "" : degrees(mean), mean === undefined ? "" : aside), cell(largest, largest === undefined ? "" : degrees(largest)), cell(slots, String(slots ?? ""))];
+      const figures = [cell(bits, bitsText({ bits }), codes ? `codes of ${codes}` : ""), cell(mean, mean === undefined ? "" : degrees(mean), mean === undefined ? "" : aside), cell(largest, largest === undefined ? "" : largestText(this.codecs[name])), cell(slots, String(slots ?? ""))];
       return element("tr", { "data-codec": name }, element("th", { scope: "row" }, nameButton(name, ...broken(name))), element("td", { class: "take" }, ...sideButtons(name)), ...figures);
     };
     const counts = new Map();
     for (const { of } of Object.values(this.codecs)) if (of) counts.set(of, (counts.get(of) ?? 0) + 1);
     this.usual = [...counts].sort((a, b) => b[1] - a[1])[0]?.[0];
-    const last = (value) => value ?? Infinity, keys = (name) => [DOMAINS.indexOf(this.codecs[name].domain), last(this.codecs[name].mean)];
+    const last = (value) => value ?? Infinity, keys = (name) => [DOMAINS.indexOf(this.codecs[name].domain), Number(this.codecs[name].of !== this.usual), last(this.codecs[name].mean)];
     const names = Object.keys(this.codecs).sort((one, other) => before(keys(one), keys(other))), count = `${names.length} of ${names.length} rows`;
     const tools = element("p", { class: "tools" }, element("label", { for: "cards-filter" }, "Filter"), element("input", { type: "search", id: "cards-filter", "data-filter": "", autocomplete: "off", spellcheck: "false" }), element("span", { role: "status", "data-count": "" }, count));
     const table = element("table", {}, element("caption", {}, element("span", {}, "Every codec")), element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...names.map(line)));
-    const note = this.usual ? `Angles on the set ${this.usual}, unless the row names a different set. Slots: issue slots to encode and decode once.` : "";
+    const note = this.usual ? `Angles on the set ${this.usual}, unless the row names a different set. ≥: the largest of the samples; the others are suprema. Slots: issue slots to encode and decode once.` : "";
     return element("div", { class: "sheet", "data-sheet": "" }, tools, element("div", { class: "scroll", role: "region", "aria-label": "Every codec", tabindex: "0" }, table), element("p", { class: "tools" }, element("button", { type: "button", "data-more": "", value: LINES })), element("p", { class: "note" }, note));
   }
 
@@ -194,16 +194,17 @@ class Cards {
 
   // The headline figures of A and B, with their places.
   short(a, b) {
-    const sides = [["a", a], ["b", b]].filter(([, name]) => name), figures = [["mean", "mean error", degrees], ["largest", "largest error", degrees], ["slots", "issue slots to encode and decode", String]];
+    const sides = [["a", a], ["b", b]].filter(([, name]) => name), figures = [["mean", "mean error", degrees], ["largest", "largest error", degrees], ["slots", "slots to encode + decode", String]];
     const cell = (key, text, name) => {
       const value = this.codecs[name][key], bits = this.bits(name), { of } = this.codecs[name];
       if (value === undefined) return element("td", {}, "not measured");
+      const isBound = key === "largest" && this.codecs[name].sampled;
       const place = standing(value, this.others(bits, of, this.codecs[name].domain).map((one) => one[key] ?? null), "less");
-      return placedCell(text(value), place, placeText(place, bits), { "data-codec": name, "data-figure": key }, place.isBest);
+      return placedCell(isBound ? largestText(this.codecs[name]) : text(value), place, placeText(place, bits), { "data-codec": name, "data-figure": key }, place.isBest);
     };
     const rows = figures.map(([key, title, text]) => element("tr", {}, element("th", { scope: "row" }, title), ...sides.map(([, name]) => cell(key, text, name))));
     const ofs = [...new Set(sides.map(([, name]) => this.codecs[name].of).filter(Boolean))];
-    const table = element("table", { class: "short" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...sides.map(([side, name]) => element("th", { scope: "col", class: `side-${side}` }, `${side.toUpperCase()} ${name}`)))), element("tbody", {}, ...rows));
+    const table = element("table", { class: "short" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...sides.map(([side, name]) => element("th", { scope: "col", class: `side-${side}` }, `${side.toUpperCase()} `, ...broken(name))))), element("tbody", {}, ...rows));
     const note = `${ofs.length ? `Angles on ${ofs.join(" and ")}. ` : ""}Longer bars are closer to the best result at the same bit count.`;
     return element("div", {}, element("h4", {}, "In short"), element("div", { class: "scroll", role: "region", "aria-label": "In short", tabindex: "0" }, table), element("p", { class: "note" }, note));
   }
@@ -355,7 +356,7 @@ class Cards {
     const encoding = name.split(" ")[0], others = Object.keys(this.codecs).filter((other) => other.split(" ")[0] === encoding);
     if (others.length < 2) return null;
     const line = (other) => {
-      const { storage, mean, largest, slots } = this.codecs[other], figures = [bitsText(this.codecs[other]), mean === undefined ? "" : degrees(mean), largest === undefined ? "" : degrees(largest), slots ?? ""];
+      const { storage, mean, largest, slots } = this.codecs[other], figures = [bitsText(this.codecs[other]), mean === undefined ? "" : degrees(mean), largest === undefined ? "" : largestText(this.codecs[other]), slots ?? ""];
       return element("tr", { "data-codec": other }, element("th", { scope: "row" }, nameButton(other, other)), element("td", { class: "take" }, ...sideButtons(other)), element("td", {}, storage ?? ""), ...figures.map((text) => element("td", { class: "n" }, String(text))));
     };
     const heads = ["codec", "A or B", "storage", "bits", "mean", "largest", "slots"].map((title, at) => element("th", { scope: "col", class: at > 2 ? "n" : at === 1 ? "take" : "" }, title));

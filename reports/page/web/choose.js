@@ -30,7 +30,7 @@ function codeAs(code, { aim, asked: usual }, { mixing, family }) {
   const mean = or(most(code.plain[0], mixed)), largest = or(most(code.plain[1], ...known.map((use) => use.max)));
   const decibels = (angle) => (angle === null ? null : 20 * Math.log10(Math.max(angle, 1e-12)));
   const loss = aim === "image" ? code.loss : decibels(aim === "worst" ? largest : mean);
-  return Object.assign(made, { mean, largest, loss, cannot: known.map((use) => use.cannot).find(Boolean) ?? "" });
+  return Object.assign(made, { mean, largest, loss, sampled: code.sampled || count > 0, cannot: known.map((use) => use.cannot).find(Boolean) ?? "" });
 }
 
 // The lowest PSNR of a code's images over some of its yaws.
@@ -47,6 +47,9 @@ function gapError(one, other, equal) {
   return Math.sqrt(((count - 1) / count) * gaps.reduce((sum, gap) => sum + (gap - mean) ** 2, 0));
 }
 
+// The weighted cost: of each pass, what memory traffic does not hide.
+const priceOf = ({ encode, decode }, { readers }, { hidden }) => Math.max(encode || 0, hidden) + readers * Math.max(decode || 0, hidden);
+
 // From how many decibels on two codes' images do not tie.
 const clearImageGap = (one, other, { step, errors, equal }) => Math.max(step, errors * gapError(one, other, equal));
 
@@ -54,7 +57,7 @@ const clearImageGap = (one, other, { step, errors, equal }) => Math.max(step, er
 function answerOf(question, asked, constants) {
   const { hidden, affordable, step, same, least, much, needless, hole, lost } = constants;
   const { said } = question, isImage = question.aim === "image", codes = question.codes.map((code) => codeAs(code, question, asked));
-  const price = ({ encode, decode }) => Math.max(encode || 0, hidden) + asked.readers * Math.max(decode || 0, hidden);
+  const price = (code) => priceOf(code, asked, constants);
   const doublings = (code) => Math.log2(price(code) / (hidden * (1 + asked.readers)));
   const loss = (code) => code.loss ?? Infinity, bits = (code) => code.bits || Infinity, tenth = (x) => (Number.isFinite(x) ? even(x * 10) / 10 : x);
   const score = (code) => loss(code) + asked.worth * doublings(code), clearGap = (a, b) => (isImage ? clearImageGap(a, b, constants) : least);
@@ -117,12 +120,15 @@ function askedOf(question, state) {
 // What a code occupies; of one that has fewer codes than that, also what these are worth.
 const bitsText = ({ bits, codes }, unit = "") => (bits ? `${bits}${unit}${codes ? `, for codes of ${codes}` : ""}` : "");
 const degrees = (value) => (value === null ? "" : `${Number(value.toPrecision(3))}°`);
-const IMAGE = "worst image, best axis";
+const IMAGE = "worst image PSNR", LARGEST = "largest error", SAME_LOG2 = 0.03;
+const isSameFigure = (a, b) => a === b || Math.abs(Math.log2(a / b)) < SAME_LOG2;
+// What only samples are known of may be larger.
+const largestText = ({ largest, sampled }) => `${sampled && largest !== null ? "≥ " : ""}${degrees(largest)}`;
 const COMPARED = [
   ["mean error", (code) => degrees(code.mean), (code) => code.mean, "less"],
-  ["largest error", (code) => degrees(code.largest), (code) => code.largest, "less"],
+  [LARGEST, largestText, (code) => code.largest, "less"],
   ["slots to encode + decode", (code) => (code.priced ? `${code.encode} + ${code.decode}` : ""), (code) => code.once, "less"],
-  [IMAGE, (code) => (code.image === null ? "" : `${code.image.toFixed(1)} dB${code.pole ? `, ${code.pole}` : ""}`), (code) => code.image, "more"],
+  [IMAGE, (code) => (code.image === null ? "not drawn" : `${code.image.toFixed(1)} dB${code.pole ? `, ${code.pole}` : ""}`), (code) => code.image, "more"],
   ["bits", (code) => bitsText(code), (code) => code.bits, "less"],
   ["bits free", (code) => String(code.free ?? ""), (code) => code.free, "more"],
 ];
@@ -266,8 +272,8 @@ class Choose {
     const place = this.root.querySelector("[data-tiles]"), turn = (this.tiling = {});
     const clean = best && (await cleanRoughness()).get(best.codec);
     if (turn !== this.tiling) return;
-    const moves = best && `A mirror's reflection moves by at most ${degrees(Math.min(2 * best.largest, 180))}.`;
-    const seen = clean ? ["Acceptable reflections", fromRoughness(clean[0]), `${clean.length > 1 ? `Invisible ${fromRoughness(clean.at(-1))}. ` : ""}Worst case: ${clean[0].where}. ${moves}`] : best && ["Reflections", `move by at most ${degrees(Math.min(2 * best.largest, 180))}`, `A mirror's; ${degrees(2 * best.mean)} on average.`];
+    const most = best && `${best.sampled ? "about" : "at most"} ${degrees(Math.min(2 * best.largest, 180))}`, moves = `A mirror's reflection moves by ${most}.`;
+    const seen = clean ? ["Acceptable reflections", fromRoughness(clean[0]), `${clean.length > 1 ? `Invisible ${fromRoughness(clean.at(-1))}. ` : ""}Worst case: ${clean[0].where}. ${moves}`] : best && ["Reflections", `move by ${most}`, `A mirror's; ${degrees(2 * best.mean)} on average.`];
     const isKnown = best?.priced, tiles = !best ? [] : [
       seen,
       ["Cost", isKnown ? `${best.encode} + ${best.decode} issue slots` : "not known", isKnown ? `To encode + to decode${families[family] ? `, ${families[family]}` : ""}.` : "No compiler on the machine of this run reports it."],
@@ -287,7 +293,9 @@ class Choose {
     list.setAttribute("aria-label", "Language of the code");
     list.addEventListener("change", title);
     title();
-    place.replaceChildren(button, list, said);
+    // Images are those of the best axis, which a world's own may not be.
+    const axis = best.pole.endsWith(" up") ? [element("span", { class: "note" }, `for worlds with z up; with y up: ${best.codec.split(" ")[0]}:axis=y`)] : [];
+    place.replaceChildren(button, list, said, ...axis);
   }
 
   // How many codes are left without each of the constraints.
@@ -324,7 +332,8 @@ class Choose {
       return element("tr", { "data-codec": code.codec }, element("th", { scope: "row" }, nameButton(code.codec, code.name)), ...COMPARED.map(([, text]) => element("td", { class: "n" }, text(code))), ratio);
     });
     const table = element("table", {}, element("caption", {}, element("span", {}, "Eligible encodings, ranked by error and cost")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
-    const note = element("p", { class: "note" }, `Memory traffic hides ${this.constants.hidden} issue slots per pass: up to there, a cost counts the same.`);
+    const isBounded = fit.some(({ sampled }) => sampled), { worth, enough } = this.asked;
+    const note = element("p", { class: "note" }, `Order: encodings that move reflections by at most ${degrees(enough)}, fewest bits first; then by error plus ${worth} dB for each doubling of the cost. Assumed: memory traffic hides ${this.constants.hidden} issue slots per pass, so a cost up to there counts the same.${isBounded ? " ≥: the largest of the samples; the others are suprema." : ""}`);
     return element("div", {}, element("div", { class: "scroll", role: "region", "aria-label": "Eligible encodings", tabindex: "0" }, table), note);
   }
 
@@ -342,13 +351,14 @@ const isImageTie = (a, b, constants) => a.image !== null && b.image !== null && 
 // A and B in the figures by which codes are chosen, the better one of each marked; images that tie are no better, and neither is a
 // code that cannot hold the normals.
 function pairTable([a, b], asked, constants) {
-  const isTie = isImageTie(a, b, constants), isFit = !a.unfit && !b.unfit;
+  const isTie = isImageTie(a, b, constants), isFit = !a.unfit && !b.unfit, prices = new Map([a, b].map((code) => [code, code.priced ? priceOf(code, asked, constants) : null]));
+  const columns = [...COMPARED, [`cost with ${asked.readers} decoding passes`, (code) => (code.priced ? `${Number((prices.get(code) / Math.min(...[...prices.values()].filter(Boolean))).toPrecision(2))}×` : ""), (code) => prices.get(code), "less"]];
   const cell = ([title, text, value, better], one, other) => {
-    const isTied = isTie && title === IMAGE, isBest = isFit && !isTied && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
+    const isTied = isTie && title === IMAGE, isUnsure = title === LARGEST && one.sampled, isBest = isFit && !isTied && !isUnsure && !isSameFigure(value(one), value(other)) && value(one) !== null && value(other) !== null && (better === "less" ? value(one) < value(other) : value(one) > value(other));
     return element("td", { class: isBest ? "n best" : "n" }, `${text(one)}${isTied ? ", a tie" : ""}`);
   };
   const heads = [a, b].map(({ name }, at) => element("th", { scope: "col", class: `n side-${CODECS[at]}` }, `${CODECS[at].toUpperCase()} `, ...broken(name)));
-  const rows = COMPARED.map((column) => element("tr", {}, element("th", { scope: "row" }, titleUnder(column[0], asked.mixing)), cell(column, a, b), cell(column, b, a)));
+  const rows = columns.map((column) => element("tr", {}, element("th", { scope: "row" }, titleUnder(column[0], asked.mixing)), cell(column, a, b), cell(column, b, a)));
   const table = element("table", { class: "pair-figures" }, element("thead", { class: "plain" }, element("tr", {}, element("td", {}), ...heads)), element("tbody", {}, ...rows));
   return element("div", { class: "scroll", role: "region", "aria-label": "A next to B", tabindex: "0" }, table);
 }

@@ -41,14 +41,18 @@ function comparedIn(table, sides) {
 }
 
 // How B differs from A, in a sentence.
-function apartText([a, b], constants) {
+function apartText([a, b], asked, constants) {
   const of = (one, other, title, more, less) => {
     if (!one || !other) return [];
     const times = other / one;
-    return Math.abs(Math.log2(times)) < 0.03 ? [`the same ${title}`] : [times < 1 ? `a ${Math.round(100 * (1 - times))}% ${less} ${title}` : times < 2 ? `a ${Math.round(100 * (times - 1))}% ${more} ${title}` : `${Number(times.toPrecision(2))} times the ${title.replace("number of ", "")}`];
+    if (isSameFigure(one, other)) return [`the same ${title}`];
+    if (times <= 0.5) return [`a ${title} ${Number((1 / times).toPrecision(2))} times ${less}`];
+    return [times < 1 ? `a ${Math.round(100 * (1 - times))}% ${less} ${title}` : times < 2 ? `a ${Math.round(100 * (times - 1))}% ${more} ${title}` : `${Number(times.toPrecision(2))} times the ${title}`];
   };
-  const image = a.image === null || b.image === null ? [] : isImageTie(a, b, constants) ? ["a worst image that ties"] : [`a worst image ${Math.abs(b.image - a.image).toFixed(1)} dB ${b.image > a.image ? "better" : "worse"}`];
-  const parts = [...of(a.mean, b.mean, "mean error", "larger", "smaller"), ...of(a.largest, b.largest, "largest error", "larger", "smaller"), ...of(a.once, b.once, "number of slots to encode + decode", "larger", "smaller"), ...image];
+  const image = a.image === null || b.image === null ? [] : isImageTie(a, b, constants) ? ["a worst image PSNR that ties"] : [`a worst image PSNR ${Math.abs(b.image - a.image).toFixed(1)} dB ${b.image > a.image ? "better" : "worse"}`];
+  const isKnown = !a.sampled && !b.sampled, [priceA, priceB] = [a, b].map((code) => (code.priced ? priceOf(code, asked, constants) : null));
+  const bits = a.bits && b.bits && a.bits !== b.bits ? [`${b.bits} bits in place of ${a.bits}`] : [];
+  const parts = [...bits, ...of(a.mean, b.mean, "mean error", "larger", "smaller"), ...(isKnown ? of(a.largest, b.largest, "largest error", "larger", "smaller") : []), ...of(priceA, priceB, `cost with ${asked.readers} decoding passes`, "higher", "lower"), ...image];
   return parts.length ? `Compared with A, B has ${parts.length > 1 ? `${parts.slice(0, -1).join(", ")} and ${parts.at(-1)}` : parts[0]}.` : "";
 }
 
@@ -88,7 +92,7 @@ class Compare {
     if (!own.every(Boolean)) return [];
     const codes = names.map((name, at) => codeAs(own[at].codes.find(({ codec }) => codec === name), own[at], own[at].asked));
     const unfit = codes.flatMap(({ name, unfit: why }, at) => (why ? [element("p", { class: "remark" }, `${CODECS[at].toUpperCase()}, ${name}: ${why}.`)] : []));
-    return [element("p", { class: "subhead" }, ...(unfit.length ? [] : [apartText(codes, constants)])), ...unfit, pairTable(codes, own[0].asked, constants), element("p", { class: "note" }, `Figures for ${[...new Set(own.map((one) => one.where))].join(" and for ")}.`)];
+    return [element("p", { class: "subhead" }, ...(unfit.length ? [] : [apartText(codes, own[0].asked, constants)])), ...unfit, pairTable(codes, own[0].asked, constants), element("p", { class: "note" }, `Angles on ${[...new Set(own.map(({ on }) => on))].join(" and ")}.${codes.some(({ sampled }) => sampled) ? " ≥: the largest of the samples." : ""}`)];
   }
 
   group({ about, figures }, isOpen) {

@@ -19,8 +19,6 @@ const ANGLE_SCALES = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2
 const APART_SCALES = [1, 2, 4, 8, 16, 32, 64, 128, 255];
 // Pixels that the lens shows on a side, and how large each is; how wide a small picture is; how many codecs are kept.
 const LENS = 11, CELL = 12, THUMB = 240, KEPT = 8, SEEN = 2;
-// How far an image is enlarged at first, about the square of so many pixels where it is off most.
-const CLOSE = 3, SQUARE = 40;
 
 function penOf(canvas) {
   return canvas.getContext("2d", { willReadFrequently: true });
@@ -337,7 +335,7 @@ class Viewer {
     this.fillLists(subject);
     this.place = { x: Math.floor(subject.width / 2), y: Math.floor(subject.height / 2) };
     this.zoom.by(0);
-    const note = subject.step > 1 ? `One pixel of each block of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown.";
+    const note = `${subject.of === "image" ? "The lens opens where A and B are furthest from exact. " : ""}${subject.step > 1 ? `One pixel of each block of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown."}`;
     this.one("[data-step]").textContent = note;
     this.fillThumbs();
     this.take(state);
@@ -345,7 +343,7 @@ class Viewer {
       const both = await Promise.all(SIDES.map((side) => this.planes(this.side(side).value)));
       if (turn !== this.turn) return;
       this.fitScale(both);
-      if (subject.of === "image") this.cropTo(both);
+      if (subject.of === "image") this.place = this.worstPlace(both);
     } catch (error) {
       this.say(error.message);
     }
@@ -354,18 +352,15 @@ class Viewer {
     this.root.dataset.begun = "";
   }
 
-  // Enlarged where both sides together are off most: whole, an image shows little of what codes do to it.
-  cropTo(both) {
-    const { width, height } = this.subject, across = Math.ceil(width / SQUARE), sums = new Float64Array(across * Math.ceil(height / SQUARE));
-    for (const planes of both.filter(({ apart }) => apart)) {
-      for (let i = 0; i < width * height; i++) sums[across * Math.floor(i / width / SQUARE) + Math.floor((i % width) / SQUARE)] += planes.difference(i);
+  // Where both sides together are off most.
+  worstPlace(both) {
+    const { width, height } = this.subject;
+    let worst = { off: 0, ...this.place };
+    for (let i = 0; i < width * height; i++) {
+      const off = both.reduce((sum, planes) => sum + (planes.codec ? planes.difference(i) : 0), 0);
+      if (off > worst.off) worst = { off, x: i % width, y: Math.floor(i / width) };
     }
-    const most = sums.indexOf(Math.max(...sums));
-    if (!sums[most]) return;
-    this.place = { x: Math.min(width - 1, (most % across + 0.5) * SQUARE | 0), y: Math.min(height - 1, (Math.floor(most / across) + 0.5) * SQUARE | 0) };
-    this.zoom.k = CLOSE;
-    this.zoom.lookAt(this.place);
-    this.one("[data-step]").prepend("Opened where the images are furthest from exact; Whole image shows all. ");
+    return { x: worst.x, y: worst.y };
   }
 
   fillLists(subject) {
@@ -522,7 +517,7 @@ class Viewer {
     }
     this.placeLens(((x - this.zoom.x) * this.zoom.k) / width, ((y - this.zoom.y) * this.zoom.k) / height);
     const exact = of === "image" ? "" : `, exact normal ${normalOf(this.shown.left.exact, i)}`;
-    this.say(`Pixel ${x * step}, ${y * step}${exact}`);
+    this.say(`Pixel ${x}, ${y}${step > 1 ? ` (${x * step}, ${y * step} of the run's image)` : ""}${exact}`);
   }
 
   enlarge(side, x, y) {

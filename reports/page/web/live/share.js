@@ -46,6 +46,8 @@ class Share {
 
   // The address is written at most a few times a second.
   later() {
+    // A link that was made is of what was seen then.
+    this.field.link.parentNode.hidden = true;
     this.writing ||= setTimeout(() => this.write(), WRITE_MS);
   }
 
@@ -155,7 +157,7 @@ class Share {
     const codec = this.see.codec(side);
     if (!codec) return [EXACT, ""];
     const found = codec.label === OWN ? this.own.trips : await knownTrips(this.see.device, codec, "sphere");
-    return [codec.label, found ? `mean ${digits(found.mean)}°, largest ${digits(found.worst)}°, PSNR ${digits(found.decibels, 4)} dB, ${codec.bits} bits` : ""];
+    return [codec.label, found ? `mean ${digits(found.mean)}°, largest ${digits(found.worst)}°, PSNR ${digits(found.decibels, 4)} dB on ${found.count} directions, ${codec.bits} bits` : ""];
   }
 }
 
