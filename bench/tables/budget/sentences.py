@@ -92,16 +92,25 @@ def _answer(row: Row) -> str:
     return f"{_subject(row)}: {fewer}{worst}, {others}{frame}. {_visible(row['flip_p99'])}"
 
 
+def _proposals(rows: Sequence[Row]) -> list[Row]:
+    return [row for row in rows if row["kind"] == PROPOSAL and not row["skipped"]]
+
+
+def enough(rows: Sequence[Row]) -> Row | None:
+    """Return the smallest recommendation without visible errors; None if there is none."""
+    unseen = (row for row in _proposals(rows) if row["flip_p99"] <= INVISIBLE)
+    return min(unseen, key=lambda row: row["bytes_per_pixel"], default=None)
+
+
 def smallest(rows: Sequence[Row]) -> str:
     """Return a sentence on the smallest recommendation without visible errors; empty for fewer than two limits."""
-    proposals = [row for row in rows if row["kind"] == PROPOSAL and not row["skipped"]]
-    seen = sorted(row["bytes_per_pixel"] for row in proposals if row["flip_p99"] <= INVISIBLE)
+    proposals = _proposals(rows)
     if len({row["limit"] for row in proposals}) < 2:
         return ""
-    most = max(row["bytes_per_pixel"] for row in proposals)
-    if not seen:
-        return f"Errors are visible even with {most:g} bytes per pixel."
-    return f"{seen[0]:g} bytes per pixel are the fewest of these limits without visible errors in a still image."
+    if not (answer := enough(rows)):
+        return f"Errors are visible even with {max(row['bytes_per_pixel'] for row in proposals):g} bytes per pixel."
+    fewest = f"{answer['bytes_per_pixel']:g} bytes per pixel are the fewest of these limits"
+    return f"{fewest} without visible errors in a still image."
 
 
 def _free(row: Row) -> str:

@@ -13,7 +13,7 @@ from .charts import charts, plotted
 from .contract import IN_LIGHT, as_known
 from .measure import in_order, measure
 from .question import question
-from .sentences import conditions, in_short, smallest, targets, told
+from .sentences import conditions, enough, in_short, smallest, targets, told
 from .table import IMPROVED, MINE, PROPOSAL, TABLE, BudgetOptions, BudgetOutputs
 from .written import file_of
 
@@ -66,7 +66,8 @@ def _sheets(rows: Sequence[Row]) -> Iterator[Sheet]:
     """Yield a comparison of all layouts; then the recommendation for each limit, in sentences and target by target,
     and possible changes to a user's layout."""
     yield from _compared(rows, list(filter(None, [smallest(rows)])))
-    for row in rows:
+    answer = enough(rows)
+    for row in sorted(rows, key=lambda row: row is not answer):
         if row["kind"] == MINE and row["changes"]:
             yield Sheet("", [], said=(f"{row['layout']}: {row['changes']}",))
         if row["kind"] in WRITTEN:

@@ -26,8 +26,9 @@ def depth_chart(rows: Sequence[Row]) -> Chart:
     """
     points = [
         {name: row[name] for name in ("depth", "storage", "rounding", "rebuilt")}
-        | {"line": _line_name(row, rows), "range": _range_text(row), "x": row["distance"], "y": row["error_max"]}
-        for row in sorted(rows, key=lambda row: row["distance"])
+        | {"line": _line_name(row), "range": _range_text(row), "x": row["distance"]}
+        | {"y": row["error_max"] / row["distance"]}
+        for row in sorted(_best_rebuilt(rows), key=lambda row: row["distance"])
         if row["error_max"] > 0
     ]
     looks: dict[str, Any] = {"by": ("line", "range"), "colour": "depth"}
@@ -39,11 +40,11 @@ def depth_chart(rows: Sequence[Row]) -> Chart:
         title=_finding_sentence(points),
         subtitle=f"Position error by distance; field of view {first['fov']:g} degrees; "
         f"{first['backend']}, {first['device']}",
-        description="The largest distance between true and rebuilt position by the distance from the eye, on "
-        "logarithmic scales, with a line for each depth encoding in its storage. The figures are in the "
-        "table.",
+        description="The largest distance between true and rebuilt position, relative to the distance from the eye, by "
+        "that distance, on logarithmic scales, with a line for each depth encoding in its storage, rebuilt in its best "
+        "way. The figures are in the table.",
         x=Axis(title="distance", scale=Scale.LOG, is_shared=False),
-        y=Axis(title="largest position error (same unit)", scale=Scale.LOG),
+        y=Axis(title="largest position error / distance", scale=Scale.LOG),
         rows=tuple(points),
         colour=Names("depth", distinct(rows, "depth")),
         dash=Names("storage", distinct(rows, "storage")),
@@ -60,11 +61,18 @@ def _range_text(row: Row) -> str:
     return f"near {row['near']:g}, far {row['far']:g}"
 
 
-def _line_name(row: Row, rows: Sequence[Row]) -> str:
-    """Return the name of a line, with the way to rebuild positions if any encoding has several."""
-    several = len({(other["depth"], other["rebuilt"]) for other in rows}) > len({other["depth"] for other in rows})
-    rounding = "" if row["rounding"] == "nearest" else row["rounding"]
-    words = (row["depth"], row["storage"], rounding, row["rebuilt"] if several else "")
+def _best_rebuilt(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows of each line's best way to rebuild positions, by the largest relative error."""
+    worst: dict[tuple[str, str], dict[str, float]] = {}
+    for row in rows:
+        ways, relative = worst.setdefault((_range_text(row), _line_name(row)), {}), row["error_max"] / row["distance"]
+        ways[row["rebuilt"]] = max(relative, ways.get(row["rebuilt"], 0.0))
+    best = {line: min(ways, key=lambda way: ways[way]) for line, ways in worst.items()}
+    return [row for row in rows if row["rebuilt"] == best[_range_text(row), _line_name(row)]]
+
+
+def _line_name(row: Row) -> str:
+    words = (row["depth"], row["storage"], "" if row["rounding"] == "nearest" else row["rounding"])
     return " ".join(filter(None, words)).replace("_", " ")
 
 
@@ -75,6 +83,5 @@ def _finding_sentence(points: Sequence[Row]) -> str:
     farthest = max(point["x"] for point in points)
     last = sorted((point for point in points if point["x"] == farthest), key=lambda point: point["y"])
     best, worst = last[0], last[-1]
-    return (
-        f"Largest error at a distance of {farthest:g}: {best['line']} {best['y']:.2g}, {worst['line']} {worst['y']:.2g}"
-    )
+    ends = f"{best['line']} {best['y']:.2g}, {worst['line']} {worst['y']:.2g}"
+    return f"Largest relative error at a distance of {farthest:g}: {ends}"

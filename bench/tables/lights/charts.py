@@ -14,7 +14,7 @@ from ..table import Row
 LEAST_ERROR = 1e-6
 # The ways to add lights, in the order of the charts.
 WAYS = ("blended", "read first")
-RANDOM = "coloured lights with falloff, worst pixel and order"
+RANDOM = "random lights, worst pixel"
 
 
 def charts(rows: Sequence[Row]) -> Iterator[Chart]:

@@ -26,7 +26,7 @@ from .sums import ORDERS
 from .table import LightsOptions, LightsOutputs
 
 # How many of the best light buffers a verdict names, next to the worst.
-NAMED = 2
+NAMED = 4
 
 # Lights in one sum.
 MOST_LIGHTS = 4096

@@ -18,16 +18,16 @@ def charts(rows: Sequence[Row]) -> Iterator[Chart]:
     usable = having(rows, "psnr_db", "normal_psnr_db")
     for index, scene in enumerate(dict.fromkeys(map(shown_scene, usable))):
         part = [row for row in usable if shown_scene(row) == scene]
-        yield image_chart(index, scene, sorted(part, key=lambda row: -row["psnr_db"]))
+        yield image_chart(index, scene, sorted(part, key=lambda row: CodecKey.of(row).label))
 
 
 def image_chart(index: int, scene: str, rows: Sequence[Row]) -> Chart:
     """Return the chart of the final image's PSNR next to the PSNR of the normals that lit it, with a line for each
-    codec and the best image at the top.
+    codec, in the order of names: one orientation ranks nothing.
 
     Args:
         index: index of the chart among the charts of the table.
-        rows: rows of one scene, the best image first.
+        rows: rows of one scene.
     """
     lines = [
         {"codec": CodecKey.of(row).label, "line": line, "image": row["psnr_db"], "normals": row["normal_psnr_db"]}
@@ -59,5 +59,5 @@ FIELDS = ((IMAGE, "image"), (NORMALS, "normals"))
 
 def _finding_sentence(lines: Sequence[Row]) -> str:
     """Return a sentence on the range of the images, which one orientation does not rank."""
-    best, worst = lines[0]["image"], lines[-1]["image"]
+    worst, best = (chosen(line["image"] for line in lines) for chosen in (min, max))
     return f"{worst:.1f} to {best:.1f} dB in one orientation, which does not rank encodings"

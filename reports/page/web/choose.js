@@ -333,7 +333,7 @@ class Choose {
     });
     const table = element("table", {}, element("caption", {}, element("span", {}, "Eligible encodings, ranked by error and cost")), element("thead", { class: "plain" }, element("tr", {}, ...heads)), element("tbody", {}, ...rows));
     const isBounded = fit.some(({ sampled }) => sampled), { worth, enough } = this.asked;
-    const note = element("p", { class: "note" }, `Order: encodings that move reflections by at most ${degrees(enough)}, fewest bits first; then by error plus ${worth} dB for each doubling of the cost. Assumed: memory traffic hides ${this.constants.hidden} issue slots per pass, so a cost up to there counts the same.${isBounded ? " ≥: the largest of the samples; the others are suprema." : ""}`);
+    const note = element("p", { class: "note" }, `${fit.some((code) => code.largest !== null && 2 * code.largest <= enough) ? `First those that move reflections by at most ${degrees(enough)}, fewest bits first; then` : "Ranked"} by error plus ${worth} dB for each doubling of the cost. Assumed: memory traffic hides ${this.constants.hidden} issue slots per pass, so a cost up to there counts the same.${isBounded ? " ≥: the largest of the samples; the others are suprema." : ""}`);
     return element("div", {}, element("div", { class: "scroll", role: "region", "aria-label": "Eligible encodings", tabindex: "0" }, table), note);
   }
 

@@ -102,8 +102,8 @@ class Compare {
     const table = element("table", {}, element("thead", { class: "plain" }, element("tr", {}, ...head)), body);
     const same = equal.length ? [element("p", { class: "note" }, `Equal: ${equal.map(({ figure }) => figure.title).join(", ")}.`)] : [];
     const rows = element("a", { href: about.view === "codecs" ? `#${about.key}` : `#rows-${about.key}` }, "All rows");
-    const said = `${about.title}: ${differ.length} of ${figures.length} figures differ`;
-    return element("details", { class: "aside", "data-group": about.title, ...(isOpen ? { open: "" } : {}) }, element("summary", {}, said), ...(body.rows.length ? [element("div", { class: "scroll", role: "region", "aria-label": `A and B compared: ${about.title}`, tabindex: "0" }, table)] : []), ...same, element("p", { class: "tools" }, rows));
+    const said = `${about.title}: ${differ.length} of ${figures.length} figures differ`, bars = body.rows.length ? [element("p", { class: "note" }, "A bar to the right: B's value is larger.")] : [];
+    return element("details", { class: "aside", "data-group": about.title, ...(isOpen ? { open: "" } : {}) }, element("summary", {}, said), ...(body.rows.length ? [element("div", { class: "scroll", role: "region", "aria-label": `A and B compared: ${about.title}`, tabindex: "0" }, table)] : []), ...bars, ...same, element("p", { class: "tools" }, rows));
   }
 
   line(one, { under, a, b, apart, said }, isFirst) {

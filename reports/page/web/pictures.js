@@ -18,7 +18,7 @@ const IMAGE_VIEWS = { final: "image", apart: "difference", flip: "FLIP" };
 const ANGLE_SCALES = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 const APART_SCALES = [1, 2, 4, 8, 16, 32, 64, 128, 255];
 // Pixels that the lens shows on a side, and how large each is; how wide a small picture is; how many codecs are kept.
-const LENS = 11, CELL = 12, THUMB = 240, KEPT = 8, SEEN = 2;
+const LENS = 11, CELL = 12, THUMB = 240, KEPT = 8, SEEN = 2, CROP = [64, 48];
 
 function penOf(canvas) {
   return canvas.getContext("2d", { willReadFrequently: true });
@@ -335,7 +335,7 @@ class Viewer {
     this.fillLists(subject);
     this.place = { x: Math.floor(subject.width / 2), y: Math.floor(subject.height / 2) };
     this.zoom.by(0);
-    const note = `${subject.of === "image" ? "The lens opens where A and B are furthest from exact. " : ""}${subject.step > 1 ? `One pixel of each block of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown."}`;
+    const note = `${subject.of === "image" ? "Above: where they are furthest from exact. " : ""}${subject.step > 1 ? `One pixel of each block of ${subject.step} × ${subject.step} is shown.` : "Every pixel is shown."}`;
     this.one("[data-step]").textContent = note;
     this.fillThumbs();
     this.take(state);
@@ -350,6 +350,24 @@ class Viewer {
     this.isReady = true;
     await this.show();
     this.root.dataset.begun = "";
+    this.crop();
+  }
+
+  // The same crop of the left and the right image and of the exact one, where A and B are furthest from it.
+  async crop() {
+    const { subject, place: { x, y } } = this, box = this.one("[data-crops]"), turn = this.turn;
+    box.hidden = subject.of !== "image";
+    if (box.hidden) return;
+    const wanted = [...SIDES.map((side) => [this.side(side).value, this.side(side).selectedOptions[0].textContent]), [ORIGINAL, "exact"]];
+    const planes = await Promise.all(wanted.map(([at]) => this.planes(at)));
+    if (turn !== this.turn) return;
+    const [wide, high] = CROP, left = clamped(x - wide / 2, 0, subject.width - wide), top = clamped(y - high / 2, 0, subject.height - high);
+    box.replaceChildren(...planes.map((one, index) => {
+      const whole = element("canvas", {}), canvas = element("canvas", { width: wide, height: high, role: "img", "aria-label": `${wanted[index][1]}, enlarged` });
+      one.draw(whole, "final", 1, false);
+      penOf(canvas).drawImage(whole, left, top, wide, high, 0, 0, wide, high);
+      return element("figure", {}, canvas, element("figcaption", {}, wanted[index][1]));
+    }));
   }
 
   // Where both sides together are off most.
