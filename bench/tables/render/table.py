@@ -242,7 +242,7 @@ TABLE = Table(
     section=Section(
         title="Image quality",
         short="Image",
-        view=View.MORE,
+        view=View.LAYOUTS,
         intro="The same encodings in the G-buffer of an otherwise exact renderer: how far is the final image, as "
         "displayed, from an image in 32-bit floats?",
         method="Each codec's image is compared with the image of the same pipeline with every target in 32-bit "
