@@ -204,20 +204,17 @@ def _rms(angle: np.ndarray) -> float:
 
 
 def asides(bits: int = 8) -> Iterator[str]:
-    """Yield lines on what the table leaves out: maps' slopes, silhouettes, arithmetic, more bits, larger images."""
+    """Yield lines on what the table leaves out: tilts of maps, silhouettes, arithmetic and more bits."""
     for name, depth, n, flat in surfaces():
         seen = depth > 0
         share = np.where(seen, NEAR / np.maximum(depth, NEAR), 0.0)
         g, other = from_depth(DEPTHS["D24"](share)), from_depth(DEPTHS["D24"](share), np.float32)
         edges, inner = seen & ~seen_around(seen), seen & seen_around(seen)
         plain, back = (angles(n, turned) for turned in (decoded(stored(encoded(n), bits)), relative(n, g, g, bits)))
-        ten = [
-            np.sqrt(np.mean(angles(n, turned)[inner] ** 2))
-            for turned in (decoded(stored(encoded(n), 10)), relative(n, g, g, 10))
-        ]
+        ten = [_rms(angles(n, turned)[inner]) for turned in (decoded(stored(encoded(n), 10)), relative(n, g, g, 10))]
         torn = 100 * np.mean(angles(n, relative(n, g, other, bits))[inner] > 1)
         yield (
-            f"{name}: tilt {np.sqrt(np.mean(angles(n, flat)[inner] ** 2)):.0f} degrees RMS; 99 % and largest angle"
+            f"{name}: tilt {_rms(angles(n, flat)[inner]):.0f} degrees RMS; 99 % and largest angle"
             f" {' and '.join(f'{np.percentile(a[inner], 99):.2f}, {a[inner].max():.2f}' for a in (plain, back))};"
             f" edges {' and '.join(f'{_rms(a[edges]):.2f}' for a in (plain, back))};"
             f" 10:10 gains {20 * np.log10(ten[0] / max(ten[1], EXACT)):.1f} dB; reader in float32 {torn:.2f} % off"
