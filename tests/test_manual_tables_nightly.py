@@ -1,11 +1,12 @@
-"""The measured tables of the manual: pages match the stored figures exactly; a nightly run measures them again."""
+"""The measured tables of the manual match the kept figures; a nightly run measures half of them again."""
 
 import pytest
 from manual_tables.measuring import measure
 from manual_tables.tables import TABLES
+from slowly import half
 
 
-@pytest.mark.parametrize("marker", TABLES)
+@pytest.mark.parametrize("marker", half(TABLES))
 def test_a_table_has_the_same_figures_when_measured_again(marker, request):
     """A compiler's counts are compared only if its version is the same."""
     table = TABLES[marker]

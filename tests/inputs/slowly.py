@@ -1,4 +1,4 @@
-"""The cases of a test that run by day, drawn at random for each commit."""
+"""Cases of a test that are drawn at random for each commit."""
 
 import random
 import subprocess
@@ -9,9 +9,19 @@ from typing import Any
 
 
 def a_tenth(values: Iterable[Any]) -> list[Any]:
-    """Return a tenth of some values in their order, a different tenth for each commit. The nightly run uses all."""
+    """Return a tenth of some values in their order, a different tenth for each commit."""
+    return one_in(10, values)
+
+
+def half(values: Iterable[Any]) -> list[Any]:
+    """Return half of some values in their order, another half for each commit."""
+    return one_in(2, values)
+
+
+def one_in(of: int, values: Iterable[Any]) -> list[Any]:
+    """Return every `of`th of some values on average, in their order, drawn anew for each commit."""
     every = list(values)
-    return drawn_of(every, -(-len(every) // 10))
+    return drawn_of(every, -(-len(every) // of))
 
 
 def drawn_of(values: Iterable[Any], count: int) -> list[Any]:

@@ -194,6 +194,7 @@ def test_rendered_images_and_images_next_to_the_page_are_shown(browser, run, tmp
         assert (drawn(page, "left") == np.asarray(final)).all()
     with Image.open(folder / "images/gloss-power47-hybrid-reference.png") as reference:
         assert (drawn(page, "right") == np.asarray(reference)).all()
+    assert page.texts("[data-crops] figcaption") == ["xy rgba8", "exact", "exact"], "crops follow a choice"
     viewed(page, view="apart", colours="grey")
     assert len(np.unique(drawn(page, "left"))) == 1 and drawn(page, "left").max() > 100, "3 of 255 everywhere"
     (text,) = page.texts("[data-pixel=left]")

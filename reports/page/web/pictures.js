@@ -350,17 +350,19 @@ class Viewer {
     this.isReady = true;
     await this.show();
     this.root.dataset.begun = "";
-    this.crop();
   }
 
   // The same crop of the left and the right image and of the exact one, where A and B are furthest from it.
   async crop() {
-    const { subject, place: { x, y } } = this, box = this.one("[data-crops]"), turn = this.turn;
+    const { subject } = this, box = this.one("[data-crops]"), turn = this.turn;
     box.hidden = subject.of !== "image";
-    if (box.hidden) return;
     const wanted = [...SIDES.map((side) => [this.side(side).value, this.side(side).selectedOptions[0].textContent]), [ORIGINAL, "exact"]];
+    const pair = JSON.stringify([subject.title, wanted]);
+    if (box.hidden || box.dataset.pair === pair) return;
     const planes = await Promise.all(wanted.map(([at]) => this.planes(at)));
     if (turn !== this.turn) return;
+    box.dataset.pair = pair;
+    const { x, y } = this.worstPlace(planes.slice(0, 2));
     const [wide, high] = CROP, left = clamped(x - wide / 2, 0, subject.width - wide), top = clamped(y - high / 2, 0, subject.height - high);
     box.replaceChildren(...planes.map((one, index) => {
       const whole = element("canvas", {}), canvas = element("canvas", { width: wide, height: high, role: "img", "aria-label": `${wanted[index][1]}, enlarged` });
@@ -440,6 +442,7 @@ class Viewer {
     this.legend(scaled || view === "flip");
     this.magnify();
     this.zoom.write();
+    await this.crop();
   }
 
   put(side, planes, view, scale, isGrey) {

@@ -1,7 +1,7 @@
 """Figures that ship with the package: they match new measurements and the current codecs."""
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pytest
 
@@ -43,13 +43,20 @@ def test_the_supremum_of_a_changed_codec_is_searched_again(monkeypatch):
     assert suprema.supremum(OCTAHEDRAL, False) == (OCTAHEDRAL, False)
 
 
+def assert_same_judgements(kept: dict[str, judge.Judgement], expected: dict[str, judge.Judgement]) -> None:
+    """Processors round float32 differently in the last place, which is 3.4e-6 degrees of a direction."""
+    for use, judgement in expected.items():
+        angles = {name: pytest.approx(getattr(judgement, name), rel=0, abs=1e-5) for name in ("mean_deg", "max_deg")}
+        assert asdict(kept[use]) == asdict(judgement) | angles, use
+
+
 def test_mixes_are_recorded_only_for_the_usual_settings(monkeypatch):
     """Recorded figures match a measurement; other seeds, domains and normals are measured."""
     monkeypatch.setattr(judge, "judged_now", lambda *_: "measured")
     uses = ["resolve", "upsample"]
     kept = judge.judgements(OCTAHEDRAL, uses, SPHERE, "sphere")
     monkeypatch.undo()
-    assert kept == judge.judged_now(OCTAHEDRAL, uses, SPHERE, "sphere")
+    assert_same_judgements(kept, judge.judged_now(OCTAHEDRAL, uses, SPHERE, "sphere"))
     monkeypatch.setattr(judge, "judged_now", lambda *_: "measured")
     others = [
         (NORMAL_SETS["sphere"](64, 1), "sphere"),

@@ -5,6 +5,7 @@ from itertools import product
 import pytest
 import test_code_slow
 from languages import RUN, require_runner
+from slowly import half
 from test_code import written
 from test_code_slow import CODECS
 from typed import codecs_named
@@ -16,13 +17,13 @@ from normalbench.encodings.storages.storage import STORAGES
 
 
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("name, language", [*product(CODECS, RUN)])
+@pytest.mark.parametrize("name, language", half(product(CODECS, RUN)))
 def test_the_code_of_a_codec_gives_the_catalogues_texels_in_any_language(language, name, tmp_path):
     test_code_slow.test_the_code_of_a_codec_gives_the_catalogues_texels(language, name, tmp_path)
 
 
 @pytest.mark.usefixtures("gl")
-@pytest.mark.parametrize("encoding", ENCODINGS)
+@pytest.mark.parametrize("encoding", half(ENCODINGS))
 def test_the_code_of_every_codec_gives_the_catalogues_texels(encoding, tmp_path):
     """C covers every storage that fits, and the other languages every third, so that each language still has every
     encoding and storage. Slang takes the HLSL text, and OpenGL the GLSL ES text without precision qualifiers."""

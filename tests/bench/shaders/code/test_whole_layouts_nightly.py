@@ -6,6 +6,7 @@ import pytest
 import test_whole_layouts
 import test_whole_layouts_slow
 from languages import require_runner
+from slowly import half
 from test_whole_layouts import check_short
 from test_whole_layouts_slow import FAST, IN_TURN, KINDS, MANY, OTHERS, TIES, many_agree
 
@@ -16,13 +17,13 @@ pytestmark = pytest.mark.usefixtures("gl")
 layouts = test_whole_layouts.layouts
 
 
-@pytest.mark.parametrize("name, language", [*product(TIES, FAST)])
+@pytest.mark.parametrize("name, language", half(product(TIES, FAST)))
 def test_code_packs_a_million_surfaces_like_the_renderer(name, language, layouts):
     require_runner(language)
     many_agree(layouts[name], language, TIES[name], MANY)
 
 
-@pytest.mark.parametrize("name, language", [each for each in product(TIES, OTHERS) if each not in IN_TURN])
+@pytest.mark.parametrize("name, language", half(each for each in product(TIES, OTHERS) if each not in IN_TURN))
 def test_code_packs_and_unpacks_like_the_renderer_in_every_language(name, language, layouts):
     test_whole_layouts_slow.test_code_packs_and_unpacks_like_the_renderer(name, language, layouts)
 
