@@ -93,21 +93,46 @@ class Rendering:
         self._more: dict[Pass, Run] = {}
         self._is_warm = False
 
-    def draw(self, scene: Scene | None = None, keeps: Keeps | None = None) -> None:
+    def draw(
+        self,
+        scene: Scene | None = None,
+        keeps: Keeps | None = None,
+        given: tuple[Resource, np.ndarray] | None = None,
+        only: Resource | None = None,
+    ) -> None:
         """Draw one frame, all passes in order.
 
         Args:
             scene: the scene at a different moment; None for no change.
             keeps: function that replaces the normals in the G-buffer; only for layout fp32, one sample per pixel.
+            given: a resource of one texture and its texels, as `read` returns them, instead of what the pass that
+                writes it alone would draw.
+            only: a resource; passes that it does not need are left out. None for all passes.
         """
         if scene:
             self.frame.show(scene)
         self.frame.advance()
+        if given:
+            (texture,) = self.frame.textures(given[0])
+            texture.write(np.ascontiguousarray(given[1][::-1], np.float32).tobytes())
+        names = self._needed(only, given[:1] if given else ()) if given or only else self.passes
         for name, run in self.passes.items():
+            if name not in names:
+                continue
             run()
             if keeps and name == GEOMETRY:
                 self._exchange(keeps)
         self._is_warm = True
+
+    def _needed(self, only: Resource | None, given: tuple[Resource, ...]) -> set[str]:
+        """Return the names of the passes that `only` needs, or all, except those that write nothing but `given`."""
+        names: set[str] = set()
+        wanted = {only} if only else set(self.frame.pipeline.resources.values())
+        for stage in reversed(self.frame.pipeline.stages):
+            if stage.writes != given and not wanted.isdisjoint(stage.writes):
+                names.add(stage.name)
+                wanted.update(stage.reads)
+        return names
 
     def _exchange(self, keeps: Keeps) -> None:
         texture = self.frame.textures(GBUFFER)[0]

@@ -26,6 +26,7 @@ NAMES: tuple[str, ...] = (
     "subsurface",
     "water",
     "ssr",
+    "denoise",
 )
 
 EFFECTS: Mapping[str, Effect] = MappingProxyType(

@@ -74,6 +74,14 @@ def a_sixth_moves(lines: list[Line]) -> None:
     assert moved["exact", "linear/packed16"] < 0.2
 
 
+def cones_need_more_bits(lines: list[Line]) -> None:
+    """Check that SVGF's image is that of exact normals (54 dB) from 10:10 bits on, and NRD's from 12:12 on."""
+    images = {(encoding, storage): (svgf, nrd) for encoding, storage, _, svgf, _, nrd in lines}
+    (power_8, cone_8), (power_10, cone_10) = images["octahedral", "rg8"], images["octahedral", "rgb10a2"]
+    _, cone_12 = images["octahedral", "rgba8 12:12"]
+    assert power_8 < 54 <= power_10 and cone_8 < 54 <= cone_12 and cone_8 + 8 < cone_10 < cone_12 - 5
+
+
 def tangent_space_means(lines: list[Line]) -> None:
     """Check the means on bumps in BC5 that docs/maps.md gives."""
     (line,) = [line for line in lines if line[0] == "bc5"]
@@ -395,6 +403,31 @@ ALL = (
         needs=("gl",),
         gather=measuring.exact_named,
         holds=a_sixth_moves,
+    ),
+    Table(
+        marker="normalbench effects denoise",
+        rows=tuple(
+            f"effects --effect denoise,denoise:weights=cone --encoding {encoding} --storage {storage} --depth none "
+            "--rays 0 --size 160x120"
+            for encoding, storage in (
+                ("octahedral", "rg8,rgb10a2,rgb8_12_12,rg16"),
+                ("xyz,xyz_renormalised", "rgb10a2"),
+            )
+        ),
+        columns=(
+            key("encoding", "encoding"),
+            key("storage", "storage"),
+            *(
+                Column(f"{whose}: {title}", name, {"effect": effect}, form, rel=0.1, abs=least)
+                for whose, effect in (("SVGF", "denoise"), ("NRD", "denoise:weights=cone"))
+                for title, name, form, least in (
+                    ("neighbours lost", "lost_neighbours_percent", "{:.2g} %".format, 0.01),
+                    ("image", "psnr_db", "{:.0f} dB".format, 1.0),
+                )
+            ),
+        ),
+        needs=("gl",),
+        holds=cones_need_more_bits,
     ),
     Table(
         marker="normalbench half",

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ....gbuffer.display import Display
+from ....gbuffer.effects.denoise import EXACT_RAYS, Denoiser
 from ....gbuffer.effects.effect import ChosenEffect
 from ....gbuffer.effects.occlusion.passes import AmbientOcclusion
 from ....gbuffer.frame.plan import Plan
+from ....gbuffer.frame.resources import FINAL
 from ....gbuffer.gl.device import Device
 from ....gbuffer.layouts.presets import LAYOUTS
 from ....gbuffer.pipelines import Pipeline
 from ....gbuffer.render import Rendering, rendering
 from ....gbuffer.scenes.catalogue import SceneMaker
+from ....gbuffer.scenes.scene import Scene
 from ....gbuffer.scenes.setting import Setting
 from ...ground.angles import angles_deg
 from ...ground.output.errors import MissingError, tell
@@ -24,6 +27,11 @@ from ...measures.metrics.totals import psnr_db
 from ..shots import Bench, Frame, image_figures, time_columns
 from ..table import Row
 from .table import TABLE
+
+DENOISING = ("lost_neighbours_percent", "gained_neighbours_percent", "lost_histories_percent")
+# Of the distance to what the camera looks at: how far it moves to the right between two frames of a denoiser, which is
+# a pixel or two.
+SIDESTEP = 1 / 200
 
 
 @dataclass(frozen=True)
@@ -57,6 +65,21 @@ class EffectsCase:
 
 
 @dataclass(frozen=True)
+class Denoising:
+    """What a denoiser read and rejected in the frames of one case.
+
+    Attributes:
+        noisy: its input in each frame, (height, width, 4).
+        has_history: which pixels had a history in each frame but the first, bool of shape (height, width).
+        weights: weight of each pixel's neighbours in the first pass of the filter, in the last frame, (height, width).
+    """
+
+    noisy: Sequence[np.ndarray]
+    has_history: Sequence[np.ndarray]
+    weights: np.ndarray
+
+
+@dataclass(frozen=True)
 class Drawn(Frame):
     """A rendered frame, with the effect's own image.
 
@@ -66,12 +89,14 @@ class Drawn(Frame):
         covered: mask of the pixels that the effect covers, bool of shape (height, width).
         hits: point that the first ray of each pixel hits, (height, width, 4), as described in `Effect.hits`; None
             for an effect without rays.
+        denoising: what a denoiser read and rejected; None for other effects.
     """
 
     own: np.ndarray
     normals: np.ndarray
     covered: np.ndarray
     hits: np.ndarray | None
+    denoising: Denoising | None = None
 
 
 class EffectsBench(Bench[EffectsCase, Drawn]):
@@ -93,13 +118,24 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
 
     def frames(self, case: EffectsCase, repeats: int = 0) -> list[Drawn]:
         effect, scene = case.effect.effect, self.scene(case.maker, case.setting)
+        # Rendered first: its rays are given to this case.
+        given = self._rays_of_reference(case)
         with rendering(self.device, case.pipeline, scene, case.plan) as drawing:
-            drawing.draw()
+            denoising = _denoised(drawing, case.effect, scene, given) if isinstance(effect, Denoiser) else None
+            if not denoising:
+                drawing.draw()
             position, direction, *_ = drawing.gbuffer()
             own, hits = drawing.read(effect.result)[0], drawing.read(effect.hits)[0] if effect.hits else None
             covered = drawn_at(own, position[..., 2] != 0)
             times = _effect_times(case, drawing, repeats) if repeats else {}
-            return [Drawn(drawing.image(), own[..., :3], direction[..., :3], covered, hits, times=times)]
+            return [Drawn(drawing.image(), own[..., :3], direction[..., :3], covered, hits, denoising, times=times)]
+
+    def _rays_of_reference(self, case: EffectsCase) -> Sequence[np.ndarray]:
+        """Return the denoiser's input in each frame of the reference, if the case is to have the same; else nothing."""
+        if case == case.reference or dict(case.effect.values).get("rays") != EXACT_RAYS:
+            return ()
+        (exact,) = self.reference(case)
+        return exact.denoising.noisy if exact.denoising else ()
 
     def display(self, case: EffectsCase, frames: list[Drawn]) -> Display:
         (frame,) = frames
@@ -111,7 +147,9 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
             return {"skipped": f"{case.effect.effect.name} shows nothing in this image"}
         image = image_figures(frames, exact)
         lost = np.count_nonzero(~np.isfinite(drawn.own[other.covered]).all(axis=-1))
-        row = _distance_columns(drawn, other) | {"psnr_db": image["psnr_db"]}
+        row = _distance_columns(drawn, other)
+        if any(FINAL in stage.writes or stage.tells for stage in case.effect.passes()):
+            row["psnr_db"] = image["psnr_db"]
         return row | {"invalid": max(image["invalid"], int(lost))} | self._method(case.reference)
 
     def _method(self, case: EffectsCase) -> Row:
@@ -131,6 +169,31 @@ class EffectsBench(Bench[EffectsCase, Drawn]):
             tell(f"method_rms is empty: {error}")
             return {}
         return {"method_rms": errors.rms, "method_mean": errors.mean}
+
+
+def moved_cameras(scene: Scene, frames: int) -> Iterator[Scene]:
+    """Yield a scene with its camera moving to the right, SIDESTEP further in each frame."""
+    view = previous = scene.view
+    right = scene.view.matrix()[0, :3] * SIDESTEP * np.linalg.norm(np.subtract(view.target, view.eye))
+    for frame in range(frames):
+        eye, target = (tuple(np.add(place, frame * right).tolist()) for place in (scene.view.eye, scene.view.target))
+        previous, view = view, replace(scene.view, eye=eye, target=target)
+        yield replace(scene, view=view, previous=previous)
+
+
+def _denoised(drawing: Rendering, effect: ChosenEffect, scene: Scene, given: Sequence[np.ndarray]) -> Denoising:
+    """Draw the frames of a denoiser, with the input `given` for each frame unless it is empty."""
+    denoiser, frames = effect.effect, int(dict(effect.values)["frames"])
+    assert isinstance(denoiser, Denoiser)
+    noisy, has_history = [], []
+    for frame, shown in enumerate(moved_cameras(scene, frames)):
+        is_last = frame == frames - 1
+        rays = (denoiser.noisy, given[frame]) if given else None
+        drawing.draw(shown, given=rays, only=None if is_last else denoiser.history)
+        noisy.append(drawing.read(denoiser.noisy)[0])
+        if frame:
+            has_history.append(drawing.read(denoiser.history)[0][..., 3] > 1)
+    return Denoising(noisy, has_history, drawing.read(denoiser.weights)[0][..., 0])
 
 
 def _effect_times(case: EffectsCase, rendered: Rendering, repeats: int) -> Row:
@@ -159,10 +222,28 @@ def _distance_columns(drawn: Drawn, exact: Drawn) -> Row:
     row["effect_psnr_db"] = psnr_db(mse)
     if drawn.hits is not None and exact.hits is not None:
         row["moved_percent"] = moved_percent(drawn.hits, exact.hits)
+    if drawn.denoising and exact.denoising:
+        row |= _denoising_columns(drawn.denoising, exact.denoising)
     row |= {"normal_mean_deg": float(np.mean(angles)), "normal_max_deg": float(np.max(angles))}
     if row["normal_mean_deg"] > 0:
         row["slope"] = row["effect_mean"] / row["normal_mean_deg"]
     return row | {"exact": mse == 0}
+
+
+def _denoising_columns(drawn: Denoising, exact: Denoising) -> Row:
+    """Return what a denoiser rejects with a code and keeps with exact normals, and the reverse."""
+    change, pairs = (
+        drawn.weights.astype(np.float64) - exact.weights,
+        zip(drawn.has_history, exact.has_history, strict=True),
+    )
+    weight = float(np.sum(exact.weights, dtype=np.float64))
+    kept = sum(int(np.count_nonzero(has)) for has in exact.has_history)
+    shares = (
+        (float(np.sum(np.maximum(-change, 0))), weight),
+        (float(np.sum(np.maximum(change, 0))), weight),
+        (sum(int(np.count_nonzero(b & ~a)) for a, b in pairs), kept),
+    )
+    return {name: 100 * part / whole for name, (part, whole) in zip(DENOISING, shares, strict=True) if whole}
 
 
 def moved_percent(hits: np.ndarray, exact: np.ndarray) -> float | None:

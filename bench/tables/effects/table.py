@@ -119,6 +119,30 @@ COLUMNS = (
         drops=5,
     ),
     Column(
+        "lost_neighbours_percent",
+        "Of the weight that exact normals give to a pixel's neighbours in the first pass of the denoiser's filter: the "
+        "share that the decoded normals do not give. Empty for other effects.",
+        unit="%",
+        better="less",
+        drops=5,
+    ),
+    Column(
+        "gained_neighbours_percent",
+        "Weight that only the decoded normals give to neighbours, relative to the weight that exact normals give: what "
+        "is blurred more. Empty for other effects.",
+        unit="%",
+        better="less",
+        drops=6,
+    ),
+    Column(
+        "lost_histories_percent",
+        "Of the pixels and frames whose history a denoiser keeps with exact normals: the share that it rejects with "
+        "the decoded normals. Empty for other effects.",
+        unit="%",
+        better="less",
+        drops=6,
+    ),
+    Column(
         "method_rms",
         "RMS difference between the effect and ray casting, with an exact G-buffer. An encoding whose effect_rms is "
         "far below this does not matter. Empty if no rays can be cast.",

@@ -36,7 +36,7 @@ from ..table import Row, Sheet, Step, Work
 from ..verdicts import codec_name
 from . import pictures
 from .charts import charts
-from .measure import EffectsBench, EffectsCase, group_of, in_order
+from .measure import DENOISING, EffectsBench, EffectsCase, group_of, in_order
 from .table import DEPTHS, EffectsOptions, EffectsOutputs
 
 MAX_RAYS = 2**16
@@ -159,12 +159,14 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
     phrases = []
     for effect, pipeline, scene in dict.fromkeys(map(group_of, measured)):
         part = [row for row in measured if group_of(row) == (effect, pipeline, scene)]
-        # What a ray hits is light of any size; how many hit something else says more than its decibels.
-        moved = having(part, "moved_percent")
-        figure, form = ("moved_percent", "{:.2g}%") if moved else ("effect_psnr_db", "{:.1f} dB")
+        # What a ray hits is light of any size: how many hit something else says more than its decibels. Of what is
+        # denoised, the displayed image says more.
+        moved, shown = having(part, "moved_percent"), having(part, "lost_neighbours_percent", "psnr_db")
+        decibels = "psnr_db" if shown else "effect_psnr_db"
+        figure, form = ("moved_percent", "{:.2g}%") if moved else (decibels, "{:.1f} dB")
         ranked = sorted(moved or part, key=lambda row: row[figure])
         ends = dict.fromkeys(f"{form.format(row[figure])} ({codec_name(row)})" for row in (ranked[0], ranked[-1]))
-        hit = " of the rays hit something else" * bool(moved)
+        hit = " of the rays hit something else" * bool(moved) + " in the displayed image" * bool(shown)
         is_unseen = not moved and ranked[0][figure] >= UNSEEN_DB
         change = "does not visibly depend on the encoding: at least" if is_unseen else "depends on it:"
         phrases.append(f"{effect} in {scene} {change} {next(iter(ends)) if is_unseen else ' to '.join(ends)}{hit}")
@@ -173,7 +175,8 @@ def _verdict(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _summary(rows: Sequence[Row]) -> Iterator[Sheet]:
-    names = ("encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "moved_percent", "method_rms", "psnr_db")
+    names = ["encoding", "storage", "depth", "effect_psnr_db", "effect_rms", "moved_percent", "method_rms", "psnr_db"]
+    names += [name for name in DENOISING if having(rows, name)]
     for effect, pipeline, scene in dict.fromkeys(group_of(row) for row in rows):
         part = [row for row in rows if group_of(row) == (effect, pipeline, scene)]
         shown = [{name: row[name] for name in names} for row in part if row["effect_rms"] is not None]

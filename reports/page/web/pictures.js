@@ -675,9 +675,9 @@ class Pair {
     this.note = element("p", { class: "note" }, `${note} `, element("span", { role: "status" }, this.said));
     const lively = drawn.map((side) => this.liveButton(side, state[side])), shown = [...sides, ...drawn], images = [...buttons.slice(0, sides.length), ...lively];
     // A stands left of B, and the differences below.
-    const inOrder = CODECS.filter((side) => shown.includes(side)).map((side) => images[shown.indexOf(side)]);
-    this.place.replaceChildren(...inOrder, ...buttons.slice(sides.length), this.note);
-    this.stills = shown.map((side, at) => ({ name: state[side], canvas: images[at].querySelector("canvas") }));
+    const inOrder = CODECS.filter((side) => shown.includes(side)), placed = inOrder.map((side) => images[shown.indexOf(side)]);
+    this.place.replaceChildren(...placed, ...buttons.slice(sides.length), this.note);
+    this.stills = inOrder.map((side, at) => ({ name: state[side], canvas: placed[at].querySelector("canvas") }));
     this.place.dataset.sides = shown.length;
     this.place.hidden = false;
     if (drawn.length) this.begin?.();

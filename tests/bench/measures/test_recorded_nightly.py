@@ -22,7 +22,8 @@ def test_a_tenth_of_the_suprema_match_the_search(codec):
     assert worst.angle_deg == pytest.approx(expected.angle_deg, rel=1e-9)
 
 
-@pytest.mark.parametrize("codec", a_tenth(codecs()), ids=name_of)
+@pytest.mark.parametrize("codec", a_tenth(codec for codec in codecs() if codec.storage.bits[0] < 32), ids=name_of)
 def test_a_tenth_of_the_recorded_mixes_match_the_measurement(codec):
+    """Errors of codes in 32-bit floats are rounding alone, which processors do differently."""
     asked = list(USES), NORMAL_SETS["sphere"](64, 0), codec.encoding.domain
     assert_same_judgements(judgements(codec, *asked), judged_now(codec, *asked))

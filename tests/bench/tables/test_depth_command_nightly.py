@@ -9,5 +9,5 @@ def test_the_plot_is_drawn(run, tmp_path):
         assert status == 0, err
         assert (tmp_path / name).read_bytes().startswith(head)
     svg = (tmp_path / "plot.svg").read_text()
-    labels = ("linear packed16 eye ray", "window depth32f projection terms", "near 1, far 100")
+    labels = ("linear packed16", "window depth32f", "near 1, far 100")
     assert all(f">{label}</text>" in svg for label in labels), svg[:500]

@@ -175,3 +175,21 @@ def test_an_effect_that_shows_nothing_is_an_error(run):
     words = ("--effect", "subsurface", "--encoding", "octahedral", "--depth", "none", "--size", "1x1")
     status, out, err = run("effects", *words)
     assert (status, out, err) == (2, "", "normalbench: subsurface shows nothing in this image\n")
+
+
+def test_a_denoiser_with_exact_normals_is_exact_and_xyz_gains_neighbours(run):
+    """Decoded `xyz` is not of unit length: the power of a dot product above 1 grows."""
+    words = ("--effect", "denoise:frames=3", "--size", "64x48", "--rays", "0", "--depth", "none", *JSON)
+    status, out, err = run("effects", *words, "--layout", "fp32", "--encoding", "octahedral,xyz", "--storage", "rgba8")
+    assert (status, err) == (0, "")
+    octahedral, xyz, exact = json.loads(out)
+    assert [row["encoding"] for row in (octahedral, xyz)] == ["octahedral", "xyz"]
+    percents = ("lost_neighbours_percent", "gained_neighbours_percent", "lost_histories_percent")
+    assert exact["exact"] and [exact[name] for name in percents] == [0, 0, 0]
+    assert 0 < octahedral["gained_neighbours_percent"] < 1 < 20 < xyz["gained_neighbours_percent"]
+    assert 0 < octahedral["lost_neighbours_percent"] < 1 < xyz["lost_neighbours_percent"]
+    # With its own rays an encoding's error is that of the rays as well.
+    words = ("--effect", "denoise:frames=3:rays=own", *words[2:])
+    own = json.loads(run("effects", *words, "--encoding", "octahedral", "--storage", "rgba8")[1])[0]
+    assert own["lost_neighbours_percent"] == octahedral["lost_neighbours_percent"]
+    assert own["effect_rms"] > 1.2 * octahedral["effect_rms"]
