@@ -66,7 +66,7 @@ class EffectsCase:
 
 @dataclass(frozen=True)
 class Denoising:
-    """What a denoiser read and rejected in the frames of one case.
+    """A denoiser's input in the frames of a case, and its rejections.
 
     Attributes:
         noisy: its input in each frame, (height, width, 4).
@@ -89,7 +89,7 @@ class Drawn(Frame):
         covered: mask of the pixels that the effect covers, bool of shape (height, width).
         hits: point that the first ray of each pixel hits, (height, width, 4), as described in `Effect.hits`; None
             for an effect without rays.
-        denoising: what a denoiser read and rejected; None for other effects.
+        denoising: None for effects that are not denoisers.
     """
 
     own: np.ndarray
