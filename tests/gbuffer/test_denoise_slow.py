@@ -160,7 +160,7 @@ def test_the_history_is_the_mean_of_the_rays_of_a_still_camera(gl):
 
 
 @pytest.mark.parametrize("clamp", ["box", "variance"])
-def test_a_clamped_history_lies_between_the_rays_around_it(gl, clamp):
+def test_a_clamped_history_is_within_the_rays_around_it(gl, clamp):
     """Light that changes from one frame to the next is not kept: the clamp brings the history to this frame's rays."""
     image = denoised(gl, ON_A_FLOOR, f":clamp={clamp}:of=occlusion", frames=2)
     around = [np.roll(image.noisy[-1][..., 0], (y, x), (0, 1)) for x in (-1, 0, 1) for y in (-1, 0, 1)]
