@@ -32,7 +32,7 @@ float whole_power(float x, int k) {
 //     tan(angle) = roughness sqrt(LOBE_SHARE / (1 - LOBE_SHARE))
 float cone_weight(float cosine, float roughness) {
     float angle = max(atan(roughness * sqrt(LOBE_SHARE / (1.0 - LOBE_SHARE))), LEAST_ANGLE);
-    return smoothstep(1.0, 0.0, acos(clamp(cosine, -1.0, 1.0)) / angle);
+    return 1.0 - smoothstep(0.0, 1.0, acos(clamp(cosine, -1.0, 1.0)) / angle);
 }
 
 float normal_weight(vec3 n, vec3 other, float roughness) {
