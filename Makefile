@@ -19,7 +19,7 @@ bench: say-bench .venv/ready
 
 # Twice as many as two cores: a test that waits for a command, a file or a browser leaves its core to another.
 test: say-test .venv/tests
-	$(BIN)/python -m pytest -n 4 $(if $(ALL),--tier $(if $(filter nightly,$(ALL)),nightly,slow)) $(if $(KEPT),--seconds $(KEPT))
+	$(BIN)/python -m pytest -n 4 $(if $(ALL),--tier $(if $(filter nightly,$(ALL)),nightly,slow))
 
 site: .venv/ready
 	@test -n "$(RUN)" || { echo "there is no run in results; make bench measures one" >&2; exit 1; }

@@ -108,13 +108,14 @@ class Canvas:
         """Return a function that runs a shader over whole targets, or over covered pixels if `depth` is given."""
         target, covers = self.target(*colours, depth=depth), self.fullscreen(fragment, **defines)
 
-        def run() -> None:
-            target.use()
-            self.device.state(COVERED if depth else None, blend)
-            self.prepare(covers.program)
-            covers.render(vertices=3)
+        return lambda: self.cover(target, covers, blend)
 
-        return run
+    def cover(self, target: Target, covers: VertexArray, blend: tuple[int, int] | None = None) -> None:
+        """Run what `fullscreen` returned over a target, over covered pixels if the target has a depth."""
+        target.use()
+        self.device.state(COVERED if target.depth else None, blend)
+        self.prepare(covers.program)
+        covers.render(vertices=3)
 
     def prepare(self, program: Program, **textures: Any) -> None:
         """Bind the inputs of a draw: the frame, the scene, tables and, by name, the resources that the pass reads."""

@@ -94,10 +94,7 @@ def _traced(macros: Mapping[str, Any], canvas: Canvas) -> Run:
 
     def run() -> None:
         covers.program["frame"] = next(frames)
-        target.use()
-        canvas.device.state(None, None)
-        canvas.prepare(covers.program)
-        covers.render(vertices=3)
+        canvas.cover(target, covers)
 
     return run
 
@@ -120,10 +117,7 @@ def _filtered(macros: Mapping[str, Any], filter_passes: int, canvas: Canvas) -> 
                 canvas.swap(DENOISED)
             covers = later if i else first
             covers.program["stride"] = 2**i
-            (target if i else first_target).use()
-            canvas.device.state(None, None)
-            canvas.prepare(covers.program)
-            covers.render(vertices=3)
+            canvas.cover(target if i else first_target, covers)
 
     return run
 
